@@ -14,6 +14,7 @@ use crate::columns::input::Input;
 use crate::columns::sets::sensor_columns;
 use crate::error::FitError;
 use crate::likelihood::bend::beyond;
+use crate::likelihood::wheels::likeliest as with_wheels;
 use crate::models::equations::Equations;
 use crate::models::weighed::spread;
 use crate::physical::coordinates::Form;
@@ -24,6 +25,7 @@ use crate::report::facts::Facts;
 use crate::report::mirror::reversed;
 use crate::report::nuisance::Agreement;
 use crate::report::parts::scatter;
+use crate::report::segments::summaries;
 use crate::report::systematic::errors;
 use crate::settings::Settings;
 use crate::settings::torque::{TorqueModel, TorqueNoise};
@@ -48,7 +50,8 @@ use crate::verdict::units::open_units;
 /// Each round corrects the samples by the noise that the round before estimated, and linearises again. A quadratic
 /// program then finds the nearest physically valid tensor within the limits, in the metric of the information. Of rates so sparse
 /// that the body turns by a tenth of a turn from one to the next, the tensor is that of the largest likelihood on the exact motion, where a
-/// motion explains them.
+/// motion explains them. Where wheels of constant momentum alone act, the weak estimate is the start of the likelihood on their exact motion, unless a
+/// [`radius`](Settings::radius) is given, or the residuals of either are more than noise: then it stays the answer.
 /// Neither the units of rate and time nor a rotation of the sensor change the result beyond rounding.
 ///
 /// ```
@@ -168,11 +171,16 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         Verdict::Determined(supported) => (supported, None),
     };
     let Supported { identifiability, prior } = *supported;
+    let scatter = scatter(&chosen.weak, variance * chosen.weak.misfit(variance).max(1.0));
+    let per_segment = summaries(&chosen.weak, record, variance, rms);
+    // with wheels alone the exact motion tells more than the weak equations
+    let is_exact = input.is_some() && completed.is_none() && scatter.is_none() && settings.radius.is_none();
+    let likeliest = if is_exact { with_wheels(&stretches, &chosen.weak, variance) } else { None };
+    let likeliest = likeliest.filter(|likeliest| chosen.weak.moved_to(likeliest).is_some());
     let weak = &chosen.weak;
-    let misfit = weak.misfit(variance);
+    let misfit = likeliest.as_ref().map_or_else(|| weak.misfit(variance), |likeliest| likeliest.misfit);
     let information = || FitError::Solver(SolverFailure::Information);
     let kept = |column: &Column| matches!(column.class(), Class::Drag | Class::Input);
-    let scatter = scatter(weak, variance * misfit.max(1.0));
     let excess = scatter.map_or(1.0, |scatter| scatter.excess());
     let deviation = (variance * misfit.max(1.0) * excess).sqrt();
     let spread = match settings.torque {
@@ -208,6 +216,8 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         input,
         joint: &joint,
         told: &told,
+        per_segment,
+        is_exact: likeliest.is_some(),
         prior: agreed,
         dissipation: &dissipation,
     };

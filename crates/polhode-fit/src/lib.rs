@@ -31,7 +31,8 @@
 //! [`flights()`] finds the spans of free rotation in a recording that also shows how the body was held and caught.
 //!
 //! The tensor of a record of rates comes from rounds of linear least squares with one small semidefinite program at their end, which is
-//! solved by outer approximation; it is not refined by maximum likelihood. [`fit_poses`] fits measured attitudes ([`Poses`]) by maximum
+//! solved by outer approximation; of a body with wheels of constant momentum maximum likelihood on the exact motion refines it before that program.
+//! [`fit_poses`] fits measured attitudes ([`Poses`]) by maximum
 //! likelihood on the exact motion.
 //!
 //! [`fit_carrier`] fits a carrier, alone and with a proof body, and an object on it to several records at once: absolute tensors.

@@ -330,6 +330,13 @@ thresholds! {
         HIGHER: f64 = 0.1, "rise of twice the log-likelihood that is another maximum", UNMEASURED;
         STRIDE: f64 = 1.5, "factor from one point of a profile to the next", UNMEASURED;
         FARTHEST: f64 = 0.5, "displacement of the tensor, over the trace, beyond which no profile is walked: tensors differ by 0.4 at most", DERIVED;
+        CONSTANT: f64 = 0.3,
+            "largest change of the momentum of wheels that counts as none, in the rates and in deviations of the noise over the root of the number of samples", UNMEASURED;
+        DIFFERENCE: f64 = 1e-4,
+            "step of the differences of the motion with wheels, over the turn of the stretch: errors of order 1e-9", DERIVED;
+        LIGHT: f64 = 1e-3, "inertia of the wheel of the motion that is followed, over the smallest moment: any", DERIVED;
+        TOGETHER: f64 = 30.0,
+            "square of the distance of the likeliest tensor with wheels from the weak estimate, in deviations of that, beyond which the weak one counts", UNMEASURED;
         FIXED: f64 = 1e8, "information on a number that is fixed, over its own", DERIVED;
         MIRRORED: f64 = 0.05,
             "share of the largest singular value that the smallest has where rates are the mirror image of attitudes", "a_turn_is_found_and_a_mirror_is_seen";

@@ -31,3 +31,4 @@ pub(crate) mod motion;
 pub(crate) mod profile;
 pub(crate) mod sums;
 pub(crate) mod track;
+pub(crate) mod wheels;

@@ -21,6 +21,8 @@ pub enum Method {
     WeakForm,
     /// Maximum likelihood on the exact motion of the free body.
     ExactMotion,
+    /// Maximum likelihood on the exact motion of the body with wheels of constant momentum, next to the estimate of the weak form.
+    ExactMotionWithWheels,
 }
 
 /// Whitened residuals of one segment: standard normal where model and noise are right.
@@ -78,7 +80,7 @@ pub struct Estimate {
     pub covariance: SMatrix<f64, 6, 6>,
     /// Covariance of the same before the physical law was imposed, with the prior: what a test of other tensors should use.
     pub free_covariance: SMatrix<f64, 6, 6>,
-    /// The Cramér–Rao bound on it, shares² of the trace; `None` where the tensor has no inverse, or no free motion of it explains the samples.
+    /// The Cramér–Rao bound on it, shares² of the trace; `None` where the tensor has no inverse, or no motion of it, free or with wheels of constant momentum, explains the samples.
     pub bound: Option<SMatrix<f64, 6, 6>>,
     /// Root of the trace of the covariance under the chosen model alone, before the physical law is imposed, over that of the bound; 1 is efficient.
     pub bound_ratio: Option<f64>,

@@ -24,10 +24,9 @@ use crate::report::estimate::{Estimate, Method, Residuals};
 use crate::report::identifiability::Identifiability;
 use crate::report::mirror::{mirror_sigmas, mirrored};
 use crate::report::model::models;
-use crate::report::nuisance::{Agreement, FittedTorque, Nuisance};
+use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary};
 use crate::report::nuisances::nuisances;
 use crate::report::parts::Scatter;
-use crate::report::segments::summaries;
 use crate::report::sensor::Suspect;
 use crate::report::systematic::systematic;
 use crate::report::torque_free::{InvariantTrend, Whiteness, trends};
@@ -58,6 +57,9 @@ pub(crate) struct Facts<'a> {
     pub(crate) joint: &'a Joint,
     /// What record and prior tell of the columns that are kept and the tensor.
     pub(crate) told: &'a Normal,
+    pub(crate) per_segment: Vec<SegmentSummary>,
+    /// Whether the weak estimate was moved to the largest likelihood on the exact motion with wheels.
+    pub(crate) is_exact: bool,
     pub(crate) prior: Option<Agreement>,
     pub(crate) dissipation: &'a [Dissipation],
 }
@@ -84,7 +86,9 @@ impl Facts<'_> {
         let free_body = weak.columns.is_empty();
         let motions =
             free_body.then(|| Motions::nearest(self.stretches, &nearest.x, self.variance)).flatten();
-        let bound = motions.as_ref().and_then(|m| m.bound(self.variance));
+        let of_motion = || Some((weak.root.transpose() * weak.root / self.variance).cholesky()?.inverse());
+        let bound =
+            if self.is_exact { of_motion() } else { motions.as_ref().and_then(|m| m.bound(self.variance)) };
         let statistical = self.statistical();
         let bound_ratio =
             bound.zip(statistical).filter(|_| self.prior.is_none()).map(|(b, own)| own / b.trace().sqrt());
@@ -129,7 +133,7 @@ impl Facts<'_> {
             samples: residuals.iter().map(|r| self.record.segments[r.segment].times().len()).sum(),
             segments: residuals.len(),
             radius: Some(weak.radius / self.rms),
-            method: Method::WeakForm,
+            method: if self.is_exact { Method::ExactMotionWithWheels } else { Method::WeakForm },
             attitudes: None,
             identifiability,
             triangle_slack: (2.0 * (LARGEST_SHARE - moments[2])).max(0.0),
@@ -143,7 +147,7 @@ impl Facts<'_> {
             nuisances: sensor,
             systematic: lines,
             prior: self.prior,
-            per_segment: summaries(weak, self.record, self.variance, self.rms),
+            per_segment: self.per_segment.clone(),
             unexplained: motion.and_then(|motion| motion.unexplained(&j)),
             mirror: if self.input.is_none() { shape_of(&mirrored(&j)).ok() } else { None },
             sigma_mirror: self.input.is_none().then(|| mirror_sigmas(&nearest.x, &on_face)),

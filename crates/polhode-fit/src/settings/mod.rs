@@ -25,7 +25,7 @@ use crate::settings::torque::{TorqueModel, TorqueNoise};
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Half width of the test functions, s; chosen by least predicted covariance without it.
+    /// Half width of the test functions, s; chosen by least predicted covariance without it. With it the weak form answers also where wheels act.
     pub radius: Option<f64>,
     /// Standard deviation of the noise of one component, rad/s, at least 1e-10 of the rates; read from the samples
     /// without it.

@@ -77,6 +77,25 @@ impl Stacked {
         self.z
     }
 
+    /// With the least at `best` and the information of (c, x) about it in the place of those of the rows.
+    pub(crate) fn at_least(&self, best: &Unknowns, information: &DMatrix<f64>) -> Option<Stacked> {
+        let r = information.clone().cholesky()?.l().transpose();
+        let (count, origin) = (best.c.len(), &self.origin);
+        let moved =
+            best.c.iter().zip(&origin.c).chain(best.x.iter().zip(&origin.x)).map(|(new, old)| new - old);
+        let left = -&r * DVector::from_iterator(count + 5, moved);
+        Some(Stacked {
+            origin: origin.clone(),
+            root: r.fixed_view::<5, 5>(count, count).into_owned(),
+            z: left.fixed_rows::<5>(count).into_owned(),
+            own: r.view((0, 0), (count, count)).into_owned(),
+            shared: r.view((0, count), (count, 5)).into_owned(),
+            right: left.rows(0, count).into_owned(),
+            squares: self.squares,
+            rows: self.rows,
+        })
+    }
+
     pub(crate) fn information(&self) -> Form {
         self.root.transpose() * self.root
     }

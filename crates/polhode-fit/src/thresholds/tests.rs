@@ -35,6 +35,7 @@ const NO_THRESHOLDS: &[&str] = &[
     "track COMMON",
     "track OWN",
     "weighed FARTHEST",
+    "wheels OWN",
 ];
 
 fn sources(folder: &Path, found: &mut Vec<std::path::PathBuf>) {

@@ -7,6 +7,7 @@ mod causes;
 mod failures;
 mod fit;
 mod flights;
+mod gyrostat;
 mod measured;
 mod models;
 mod next_step;

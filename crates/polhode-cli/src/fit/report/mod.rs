@@ -19,6 +19,7 @@ use super::flights::Spans;
 pub(super) fn method(e: &Estimate) -> &'static str {
     match e.method {
         Method::ExactMotion => "maximum likelihood on the exact motion of the free body",
+        Method::ExactMotionWithWheels => "maximum likelihood on the exact motion of the body with wheels",
         _ => METHOD,
     }
 }

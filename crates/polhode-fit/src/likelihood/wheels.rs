@@ -1,0 +1,424 @@
+//! The likeliest tensor of a body with wheels, on its exact motion, from a weak estimate.
+//!
+//! A stretch is the motion `p' = p × ω`, `p = J ω + u h`, from a rate at its middle, with the momentum h of the wheels constant; its readings are
+//! `y = P⁻¹ (ω + b)`. Windows double about the middles of the stretches, in all but the last of which the weak estimate pulls; the derivatives by
+//! tensor, u and start are central differences of the closed form.
+
+use nalgebra::{DMatrix, DVector, Matrix3, UnitQuaternion, Vector3};
+use polhode::body::{Body, Wheel};
+use polhode::flow::GyrostatMotion;
+use polhode::inertia::Inertia;
+
+use crate::columns::column::{Column, Unknowns, terms_of};
+use crate::columns::effect::Class;
+use crate::physical::coordinates::{eigen, tensor};
+use crate::signal::stretch::Stretch;
+use crate::solve::weak_estimate::{Part, WeakEstimate};
+use crate::thresholds::likelihood::{
+    CHANGE, CONSTANT, DAMPING, DIFFERENCE, FIRST, LIGHT, MOST_DAMPING, SAMPLES, STEPS, STILL, TOGETHER,
+};
+
+/// Numbers of a start.
+const OWN: usize = 3;
+
+/// The likeliest unknowns.
+pub(crate) struct Likeliest {
+    pub(crate) at: Unknowns,
+    /// On columns and coordinates, each start at its best, per reciprocal variance of the noise; with the priors of the columns.
+    pub(crate) information: DMatrix<f64>,
+    /// Mean square of the residuals over the noise.
+    pub(crate) misfit: f64,
+}
+
+/// The likeliest unknowns next to `weak`; `None` where something else acts than wheels of constant momentum, where the motion has no closed form,
+/// where more is left than noise, and where they lie apart from the weak ones.
+pub(crate) fn likeliest(stretches: &[Stretch], weak: &WeakEstimate, variance: f64) -> Option<Likeliest> {
+    let root = weak.stacked.as_ref()?.whole();
+    let told = |column: &Column| match column.class() {
+        Class::Input => true,
+        Class::Sensor => column.effect().change_of_rate(&Vector3::zeros()).is_some(),
+        _ => false,
+    };
+    if weak.has_torque_noise() || !weak.columns.iter().all(|column| column.segment.is_none() && told(column))
+    {
+        return None;
+    }
+    let tracks = weak.parts.iter().map(|part| {
+        let stretch = stretches.iter().find(|stretch| stretch.index == part.stretch)?;
+        Track::new(stretch, part, weak, variance)
+    });
+    let tracks = tracks.collect::<Option<Vec<Track<'_>>>>()?;
+    let problem = Problem { tracks, weak, variance, pull: root.transpose() * root };
+    let model = problem.grow()?;
+    let sums = problem.sums(&model, f64::INFINITY)?;
+    let components = 3 * sums.iter().map(|sums| sums.samples).sum::<usize>();
+    let unknowns = weak.columns.len() + 5 + OWN * sums.len();
+    let squares: f64 = sums.iter().map(|sums| sums.squares).sum();
+    let misfit = squares / variance / components.checked_sub(unknowns).filter(|dof| *dof > 0)? as f64;
+    let apart = problem.apart(&model);
+    let apart = apart.dot(&(&problem.pull * &apart)) / variance;
+    let (information, _) = problem.reduced(&sums, &model, 0.0, false)?;
+    let is_noise = weak.misfit(variance).max(misfit) <= weak.expected_misfit();
+    (is_noise && apart <= TOGETHER).then_some(Likeliest { at: model.at, information, misfit })
+}
+
+/// The motion of a body with wheels, whose momentum is constant.
+struct Motion {
+    motion: GyrostatMotion,
+    /// Of the wheels of the body that is followed, along the principal axes, and of those that are meant.
+    followed: Vector3<f64>,
+    meant: Vector3<f64>,
+    moments: Vector3<f64>,
+    /// Takes coordinates along the principal axes to those of the tensor.
+    axes: Matrix3<f64>,
+}
+
+impl Motion {
+    /// From the rate `start`; `None` where a moment is not positive, or the motion has too few digits.
+    ///
+    /// A multiple c of |p|² in twice the energy changes no p(t). With it the body that is followed has the moments I/(1 + c I), which obey the triangle
+    /// inequality also where an estimate does not, and wheels of the momentum h/(1 + c I).
+    fn new(j: &Matrix3<f64>, wheel: &Vector3<f64>, start: &Vector3<f64>) -> Option<Motion> {
+        let (moments, mut axes) = eigen(*j);
+        if axes.determinant() < 0.0 {
+            axes.column_mut(2).neg_mut();
+        }
+        let common = moments.map(|own| 1.0 + 4.0 * own / moments[2]);
+        let inertia = moments.component_div(&common);
+        let meant = axes.tr_mul(wheel);
+        let momentum = moments.component_mul(&axes.tr_mul(start)) + meant;
+        let followed = meant.component_div(&common);
+        // so light that it fits into the body
+        let light = LIGHT * inertia[0];
+        let axis = if followed == Vector3::zeros() { Vector3::z() } else { followed };
+        let held = Wheel::new(axis, light, followed.norm() / light).ok()?;
+        let body = Body::free(Inertia::from_positive_moments(inertia.into()).ok()?).with_wheel(held).ok()?;
+        let rate = (momentum - followed).component_div(&inertia);
+        let start = body.state(UnitQuaternion::identity(), rate).ok()?;
+        let motion = GyrostatMotion::new(&body, &start).ok()?;
+        Some(Motion { motion, followed, meant, moments, axes })
+    }
+
+    /// The rate; `None` out of reach.
+    fn at(&self, t: f64) -> Option<Vector3<f64>> {
+        let momentum = Vector3::from(self.motion.at(t).ok()?.momentum_body) + self.followed;
+        Some(self.axes * (momentum - self.meant).component_div(&self.moments))
+    }
+}
+
+/// A stretch, its time measured from its middle.
+struct Track<'a> {
+    stretch: &'a Stretch,
+    middle: f64,
+    /// Of the wheels, in units of the column.
+    wheel: Vector3<f64>,
+    start: Vector3<f64>,
+    /// One over the variance of its noise, in that of all.
+    weight: f64,
+}
+
+impl<'a> Track<'a> {
+    /// `None` where a torque is known, or the momentum of the wheels changes by what readings would show.
+    fn new(stretch: &'a Stretch, part: &Part, weak: &WeakEstimate, variance: f64) -> Option<Track<'a>> {
+        let inputs = stretch.inputs.as_ref()?;
+        let count = stretch.times.len();
+        let wheel = inputs.wheel.iter().sum::<Vector3<f64>>() / count as f64;
+        let terms = terms_of(&weak.columns, &weak.at, stretch);
+        let change = inputs.wheel.iter().map(|h| (h - wheel).norm()).fold(0.0, f64::max);
+        let weight = 1.0 / part.levels.white;
+        let moves = change * terms.input.abs() * (count as f64 * weight / variance).sqrt();
+        if inputs.torque.iter().any(|torque| *torque != Vector3::zeros())
+            || moves > CONSTANT * eigen(terms.j).0[0]
+        {
+            return None;
+        }
+        let middle = 0.5 * (stretch.times.first()? + stretch.times.last()?);
+        let nearest = stretch.times.partition_point(|t| *t < middle).min(count - 1);
+        let start = terms.rate(&(stretch.rates[nearest] - part.noise[nearest]));
+        Some(Track { stretch, middle, wheel, start, weight })
+    }
+
+    fn within(&self, radius: f64) -> impl Iterator<Item = usize> {
+        let low = self.stretch.times.partition_point(|t| *t < self.middle - radius);
+        low..self.stretch.times.partition_point(|t| *t <= self.middle + radius)
+    }
+
+    fn reach(&self) -> f64 {
+        0.5 * self.stretch.duration()
+    }
+}
+
+/// Where a search is.
+#[derive(Clone)]
+struct Model {
+    at: Unknowns,
+    starts: Vec<Vector3<f64>>,
+}
+
+/// Normal equations of one stretch, of columns, coordinates and start, per reciprocal variance of the noise.
+struct Sums {
+    matrix: DMatrix<f64>,
+    gradient: DVector<f64>,
+    squares: f64,
+    samples: usize,
+}
+
+struct Problem<'a> {
+    tracks: Vec<Track<'a>>,
+    weak: &'a WeakEstimate,
+    variance: f64,
+    /// Information of the weak equations on columns and coordinates.
+    pull: DMatrix<f64>,
+}
+
+impl Problem<'_> {
+    /// Numbers that all stretches share.
+    fn common(&self) -> usize {
+        self.weak.columns.len() + 5
+    }
+
+    /// The likeliest model of the whole stretches; `None` where the search does not come to rest.
+    fn grow(&self) -> Option<Model> {
+        let starts = self.tracks.iter().map(|track| track.start).collect();
+        let mut model = Model { at: self.weak.at.clone(), starts };
+        let end = self.tracks.iter().map(Track::reach).fold(0.0, f64::max);
+        let mut radius =
+            FIRST / self.tracks.iter().map(|track| self.fastest(track, &model)).fold(1.0, f64::max);
+        let few =
+            |track: &Track<'_>, radius| track.within(radius).count() < SAMPLES.min(track.stretch.times.len());
+        while radius < end && self.tracks.iter().any(|track| few(track, radius)) {
+            radius *= 2.0;
+        }
+        while radius < end {
+            model = self.settle(model, radius, true)?.0;
+            radius *= 2.0;
+        }
+        let (model, is_still) = self.settle(model, f64::INFINITY, false)?;
+        is_still.then_some(model)
+    }
+
+    /// The rate at which wheels turn the momentum about themselves.
+    fn fastest(&self, track: &Track<'_>, model: &Model) -> f64 {
+        let terms = terms_of(&self.weak.columns, &model.at, track.stretch);
+        (track.wheel * terms.input).norm() / eigen(terms.j).0[0]
+    }
+
+    /// Gauss's and Newton's steps, damped; with whether they ended at the bottom.
+    fn settle(&self, mut model: Model, radius: f64, is_pulled: bool) -> Option<(Model, bool)> {
+        let cost = |sums: &[Sums], model: &Model| {
+            let own: f64 = sums.iter().map(|sums| sums.squares).sum();
+            own + self.beside(model, is_pulled)
+        };
+        let mut sums = self.sums(&model, radius)?;
+        let mut least = cost(&sums, &model);
+        let (mut damping, mut is_still) = (0.0, false);
+        for _ in 0..STEPS {
+            let step = self.step(&sums, &model, damping, is_pulled);
+            is_still = damping == 0.0 && step.as_ref().is_some_and(|(_, gain)| *gain < STILL * self.variance);
+            let next = step.and_then(|(next, _)| Some((self.sums(&next, radius)?, next)));
+            match next.map(|(there, next)| (cost(&there, &next), there, next)) {
+                Some((less, there, next)) if less <= least => {
+                    (model, sums, least) = (next, there, less);
+                    damping = if damping > DAMPING { damping / CHANGE } else { 0.0 };
+                }
+                // at the bottom rounding alone decides
+                Some(_) if is_still => {}
+                _ => damping = f64::max(CHANGE * damping, DAMPING),
+            }
+            if is_still || damping > MOST_DAMPING {
+                break;
+            }
+        }
+        Some((model, is_still))
+    }
+
+    /// By how much columns and coordinates differ from those of the weak estimate.
+    fn apart(&self, model: &Model) -> DVector<f64> {
+        let of = |at: &Unknowns| DVector::from_iterator(self.common(), at.c.iter().chain(&at.x).copied());
+        of(&model.at) - of(&self.weak.at)
+    }
+
+    /// Squares of the priors of the columns, and of the pull.
+    fn beside(&self, model: &Model, is_pulled: bool) -> f64 {
+        let priors = self.weak.columns.iter().zip(&model.at.c);
+        let own: f64 =
+            priors.filter_map(|(column, c)| Some(c / column.prior?)).map(|share| share * share).sum();
+        let apart = self.apart(model);
+        let pull = if is_pulled { apart.dot(&(&self.pull * &apart)) } else { 0.0 };
+        own * self.variance + pull
+    }
+
+    /// Information and gradient of what all stretches share, each start at its best for it.
+    fn reduced(
+        &self,
+        all: &[Sums],
+        model: &Model,
+        damping: f64,
+        is_pulled: bool,
+    ) -> Option<(DMatrix<f64>, DVector<f64>)> {
+        let common = self.common();
+        let (mut information, mut gradient) = (DMatrix::zeros(common, common), DVector::zeros(common));
+        for sums in all {
+            let Eliminated { inverse, mixed, of_start } = sums.eliminated(common, damping)?;
+            information += sums.matrix.view((0, 0), (common, common)) - &mixed * inverse * mixed.transpose();
+            gradient += sums.gradient.rows(0, common) - &mixed * (inverse * of_start);
+        }
+        for (k, column) in self.weak.columns.iter().enumerate() {
+            if let Some(prior) = column.prior {
+                let weight = self.variance / (prior * prior);
+                information[(k, k)] += weight;
+                gradient[k] -= weight * model.at.c[k];
+            }
+        }
+        if is_pulled {
+            information += &self.pull;
+            gradient -= &self.pull * self.apart(model);
+        }
+        for k in 0..common {
+            information[(k, k)] *= 1.0 + damping;
+        }
+        Some((information, gradient))
+    }
+
+    /// The model after a step, and by how much the linear problem lowers the sum of squares.
+    fn step(&self, all: &[Sums], model: &Model, damping: f64, is_pulled: bool) -> Option<(Model, f64)> {
+        let common = self.common();
+        let (information, gradient) = self.reduced(all, model, damping, is_pulled)?;
+        let step = information.cholesky()?.solve(&gradient);
+        let mut gain = step.dot(&gradient);
+        let mut next = model.clone();
+        let count = self.weak.columns.len();
+        next.at.c.iter_mut().zip(step.iter()).for_each(|(c, step)| *c += step);
+        next.at.x += step.rows(count, 5);
+        for (start, sums) in next.starts.iter_mut().zip(all) {
+            let Eliminated { inverse, mixed, of_start } = sums.eliminated(common, damping)?;
+            gain += of_start.dot(&(inverse * of_start));
+            *start += inverse * (of_start - mixed.tr_mul(&step));
+        }
+        Some((next, gain))
+    }
+
+    fn sums(&self, model: &Model, radius: f64) -> Option<Vec<Sums>> {
+        let each = self.tracks.iter().zip(&model.starts);
+        each.map(|(track, start)| self.sums_of(track, &model.at, start, radius)).collect()
+    }
+
+    fn sums_of(&self, track: &Track<'_>, at: &Unknowns, start: &Vector3<f64>, radius: f64) -> Option<Sums> {
+        let columns = &self.weak.columns;
+        let (count, common) = (columns.len(), self.common());
+        let terms = terms_of(columns, at, track.stretch);
+        let back = terms.sensor.try_inverse()?;
+        let turned = (track.wheel * terms.input).norm() / eigen(terms.j).0[0];
+        let h = DIFFERENCE / (1.0 + radius.min(track.reach()) * turned.max(1.0));
+        let motion = |k: Option<usize>, h: f64| {
+            let (mut x, mut u, mut start) = (at.x, terms.input, *start);
+            match k {
+                Some(k) if k < count => u += h,
+                Some(k) if k < common => x[k - count] += h,
+                Some(k) => start[k - common] += h,
+                None => {}
+            }
+            Motion::new(&tensor(&x), &(track.wheel * u), &start)
+        };
+        let here = motion(None, 0.0)?;
+        let of_motion = |k: &usize| *k >= count || columns[*k].class() == Class::Input;
+        let moved =
+            (0..common + OWN).filter(of_motion).map(|k| Some((k, motion(Some(k), h)?, motion(Some(k), -h)?)));
+        let moved = moved.collect::<Option<Vec<_>>>()?;
+        let size = common + OWN;
+        let mut sums = Sums {
+            matrix: DMatrix::zeros(size, size),
+            gradient: DVector::zeros(size),
+            squares: 0.0,
+            samples: 0,
+        };
+        let mut rows = vec![Vector3::zeros(); size];
+        for sample in track.within(radius) {
+            let t = track.stretch.times[sample] - track.middle;
+            let reading = back * (here.at(t)? + terms.offset);
+            let residual = track.stretch.rates[sample] - reading;
+            for (k, above, below) in &moved {
+                rows[*k] = back * (above.at(t)? - below.at(t)?) / (2.0 * h);
+            }
+            for (k, column) in columns.iter().enumerate() {
+                if let Some(change) = column.effect().change_of_rate(&reading) {
+                    rows[k] = back * -change;
+                }
+            }
+            for i in 0..size {
+                sums.gradient[i] += rows[i].dot(&residual);
+                for k in i..size {
+                    sums.matrix[(i, k)] += rows[i].dot(&rows[k]);
+                }
+            }
+            sums.squares += residual.norm_squared();
+            sums.samples += 1;
+        }
+        sums.matrix.fill_lower_triangle_with_upper_triangle();
+        sums.matrix *= track.weight;
+        sums.gradient *= track.weight;
+        sums.squares *= track.weight;
+        sums.squares.is_finite().then_some(sums)
+    }
+}
+
+/// A start that is taken out of the equations.
+struct Eliminated {
+    inverse: Matrix3<f64>,
+    /// Rows of what is shared.
+    mixed: DMatrix<f64>,
+    of_start: Vector3<f64>,
+}
+
+impl Sums {
+    /// `None` where the start is not determined.
+    fn eliminated(&self, common: usize, damping: f64) -> Option<Eliminated> {
+        let mut own: Matrix3<f64> = self.matrix.fixed_view::<OWN, OWN>(common, common).into_owned();
+        for k in 0..OWN {
+            own[(k, k)] *= 1.0 + damping;
+        }
+        Some(Eliminated {
+            inverse: own.cholesky()?.inverse(),
+            mixed: self.matrix.view((0, common), (common, OWN)).into_owned(),
+            of_start: self.gradient.fixed_rows::<OWN>(common).into_owned(),
+        })
+    }
+}
+
+impl WeakEstimate {
+    /// With these unknowns and what the motion tells of them in the place of its own; the equations stay what they are.
+    pub(crate) fn moved_to(&mut self, likeliest: &Likeliest) -> Option<()> {
+        let stacked = self.stacked.as_ref()?.at_least(&likeliest.at, &likeliest.information)?;
+        self.root = stacked.root;
+        self.at = likeliest.at.clone();
+        self.stacked = Some(stacked);
+        Some(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physical::coordinates::{Coordinates, trace_free};
+    use polhode::num::Random;
+
+    /// Against the equation of motion, also of moments that no body has.
+    #[test]
+    fn the_motion_solves_its_equation() {
+        let mut random = Random::new(6);
+        for moments in [[1.0, 2.0, 2.6], [1.0, 2.0, 3.4], [0.02, 2.0, 2.3]] {
+            let j = Matrix3::from_diagonal(&Vector3::from(moments)) + trace_free(&Coordinates::repeat(0.01));
+            let j = j / j.trace();
+            for wheel in [random.normal_vector() * 0.3, Vector3::zeros()] {
+                let start = random.normal_vector();
+                let motion = Motion::new(&j, &wheel, &start).unwrap();
+                let (t, h) = (3.0, 1e-4);
+                let [before, here, after] = [t - h, t, t + h].map(|t| motion.at(t).unwrap());
+                let change = j * (after - before) / (2.0 * h);
+                assert!((motion.at(0.0).unwrap() - start).norm() < 1e-13);
+                let expected = (j * here + wheel).cross(&here);
+                assert!((change - expected).norm() < 1e-6 * (1.0 + expected.norm()), "{moments:?}");
+            }
+        }
+    }
+}
