@@ -8,6 +8,9 @@ use super::{Judgement, OtherWheel, Reading, Trajectory};
 use crate::body::WheelAtStart;
 use crate::rotation::Vec3;
 
+/// L in space, and what it changes by with the speed of a wheel.
+type Pair = (Vec3<f64>, Vec3<f64>);
+
 /// L may scatter by so many times what a row may be off.
 const SCATTER: f64 = 3.0;
 
@@ -54,15 +57,14 @@ fn speed_off(
     let wheel = told.wheels[number].at_speed();
     let axis = Vec3::from(wheel.axis()) * (wheel.inertia() / body.scale());
     let rows = states(record, reading, &body, &triples(record.times.len(), GROUPS));
-    let pairs: Vec<(Vec3<f64>, Vec3<f64>)> = rows
+    let pairs: Vec<Pair> = rows
         .iter()
         .filter_map(|row| row.attitude.map(|q| (q.rotate(quantities.whole_momentum(row)), q.rotate(axis))))
         .collect();
     let count = pairs.len().max(1) as f64;
-    let sum = |of: &dyn Fn(&(Vec3<f64>, Vec3<f64>)) -> f64| pairs.iter().map(of).sum::<f64>();
-    let total = pairs.iter().fold((Vec3::zero(), Vec3::zero()), |all: (Vec3<f64>, Vec3<f64>), pair| {
-        (all.0 + pair.0, all.1 + pair.1)
-    });
+    let sum = |of: &dyn Fn(&Pair) -> f64| pairs.iter().map(of).sum::<f64>();
+    let zero: Pair = (Vec3::zero(), Vec3::zero());
+    let total = pairs.iter().fold(zero, |all, pair| (all.0 + pair.0, all.1 + pair.1));
     let (l_mean, a_mean) = (total.0 * (1.0 / count), total.1 * (1.0 / count));
     let along = sum(&|(l, a)| (*l - l_mean).dot(*a - a_mean));
     let square = sum(&|(_, a)| (*a - a_mean).norm_squared());

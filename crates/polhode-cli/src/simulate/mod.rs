@@ -142,7 +142,11 @@ impl Simulate {
             )
             .map_err(|error| Error::Input(error.to_string()))?;
             let thrown = toss as f64 * (self.until + pause);
-            for (((t, w), q), h) in written.iter().zip(&rates).zip(&attitudes).zip(&wheel) {
+            // momenta are told for the time of the row, but for what the turning of the body makes of them when it is read
+            let told = written.iter().zip(&sampled).zip(&wheel).map(|((written, sampled), wheel)| {
+                disturbances.wheel_at(*written) + (wheel - disturbances.wheel_at(*sampled))
+            });
+            for (((t, w), q), h) in written.iter().zip(&rates).zip(&attitudes).zip(told) {
                 let mut cells = vec![thrown + t];
                 if noise.is_some() {
                     cells.extend([q.w, q.i, q.j, q.k]);
