@@ -6,7 +6,8 @@
 
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 
-use crate::body::{Body, Force, Orbit, StateError};
+use crate::body::{Body, Force, Orbit, Wheel, WheelAtStart};
+use crate::error::Error;
 use crate::flow::{Mode, TumblingElements};
 use crate::inertia::{Amount, Inertia, MassError, MassProperties, Solid};
 use crate::rotation::EulerSequence;
@@ -38,6 +39,8 @@ pub struct NamedBody {
     pub omega_body: [f64; 3],
     /// The orbit whose gravity gradient turns it, of a body that has no free motion.
     pub orbit: Option<NamedOrbit>,
+    /// The wheels that it carries, which its inertia includes.
+    pub wheels: Vec<WheelAtStart>,
 }
 
 /// The orbit of a catalogued body.
@@ -89,12 +92,14 @@ impl NamedBody {
         }
     }
 
-    /// The body with its weight and the gravity gradient of its orbit.
+    /// The body with its weight, the gravity gradient of its orbit and its wheels, which have their speeds at the start of the reference
+    /// motion.
     ///
     /// # Errors
     /// None of the catalogue's.
-    pub fn body(&self) -> Result<Body, StateError> {
+    pub fn body(&self) -> Result<Body, Error> {
         let body = Body::heavy(self.inertia.clone(), self.weight_moment.into())?;
+        let body = body.with_wheels_at_start(&self.wheels, 0.0, self.omega_body.into())?;
         Ok(match &self.orbit {
             Some(named) => body.with(Force::gravity_gradient_on(named.orbit.clone())),
             None => body,
@@ -173,6 +178,7 @@ impl Entry {
             orientation,
             omega_body,
             orbit: hyperion::orbit(name),
+            wheels: wheels(name).unwrap_or_default(),
         })
     }
 }
@@ -262,7 +268,28 @@ fn tumblers() -> impl Iterator<Item = Entry> {
     })
 }
 
-fn states() -> [Entry; 11] {
+/// The wheels of the body `name`, which turn freely: three along its axes, of 50 N m s at 6000 rpm.
+fn wheels(name: &str) -> Option<Vec<WheelAtStart>> {
+    const RPM: f64 = core::f64::consts::PI / 30.0;
+    if name != BSK_SAT {
+        return None;
+    }
+    let wheel = |(axis, speed): (usize, f64)| {
+        let along = Vector3::ith(axis, 1.0);
+        Wheel::new(along, 50.0 / (6000.0 * RPM), speed * RPM).ok().map(WheelAtStart::free)
+    };
+    [100.0, 200.0, 300.0].into_iter().enumerate().map(wheel).collect()
+}
+
+const BSK_SAT: &str = "bsk-sat";
+
+const BSK_SAT_START: Orientation = Orientation {
+    frame: "inertial axes of the example",
+    epoch: None,
+    source: "modified Rodrigues parameters 0.1, 0.2, -0.3 of the example",
+};
+
+fn states() -> [Entry; 12] {
     // °/day to rad/s
     const DEGREE_PER_DAY: f64 = core::f64::consts::PI / 180.0 / 86_400.0;
     [
@@ -319,6 +346,16 @@ fn states() -> [Entry; 11] {
             moments: Ok([2.41e-2, 2.34e-2, 2.01e-2]),
             omega_body: [0.3, 1.0, 0.4],
             attitude: None,
+        },
+        Entry {
+            name: BSK_SAT,
+            summary: "example spacecraft with a freely turning reaction wheel along each axis",
+            source: "Basilisk (github.com/AVSLab/basilisk), examples/scenarioAttitudeFeedbackRW.py, without its control and gravity: wheels Honeywell HR16 of 50 N m s at 6000 rpm, at 100, 200 and 300 rpm",
+            unit: SI,
+            moments: Ok([900.0, 800.0, 600.0]),
+            omega_body: [0.001, -0.01, 0.03],
+            // (1 - s^2, 2 s)/(1 + s^2) with s^2 = 0.14
+            attitude: Some(([0.86 / 1.14, 0.2 / 1.14, 0.4 / 1.14, -0.6 / 1.14], BSK_SAT_START)),
         },
         Entry {
             name: "textbook",

@@ -1,11 +1,12 @@
 //! Bodies with wheels: every way to follow them against Taylor series in double-double, and what body and wheels keep together.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use polhode::body::{Body, Conserved, Force, Problem, State, Wheel, WheelError};
+use polhode::body::{Body, Clock, Conserved, Force, Problem, State, Wheel, WheelAtStart, WheelError};
 use polhode::flow::{FreeMotion, GyrostatMotion, NoClosedForm};
 use polhode::inertia::Inertia;
 use polhode::method::{Claimed, StepError, catalogue, method};
-use polhode::run::Run;
+use polhode::rotation::Quat;
+use polhode::run::{Ensemble, EnsembleError, Rows, Run};
 
 fn tensor() -> Matrix3<f64> {
     Matrix3::new(10.0, -0.5, 0.25, -0.5, 12.0, 0.75, 0.25, 0.75, 15.0)
@@ -298,6 +299,62 @@ fn a_run_with_wheels_is_resumed_with_the_same_bits() {
         assert_eq!(resumed.advance_to(400).unwrap().state, whole, "{name}");
         assert!(Run::resume(&method, &other, &text.parse().unwrap()).is_err(), "{name}");
     }
+}
+
+/// Each member has the wheels of its own start, at any time of it, by angular velocity and by momentum.
+#[test]
+fn members_of_an_ensemble_have_the_bits_of_runs_with_wheels_of_their_own() {
+    let told = [
+        WheelAtStart::free(wheel([1.0, 2.0, -2.0], 0.05, 60.0)),
+        WheelAtStart::driven(wheel([0.0, 0.0, 1.0], 0.1, -25.0), 0.3, [1.5, 4.25]).unwrap(),
+        WheelAtStart::held(wheel([1.0, 0.0, 0.0], 0.1, 5.0)),
+    ];
+    let inertia = |k: u32| Inertia::from_tensor(tensor() * (1.0 + 0.01 * f64::from(k))).unwrap();
+    let omega = |k: u32| OMEGA * (1.0 + 0.1 * f64::from(k));
+    let of = |wheels: &[WheelAtStart], k, t| {
+        Body::free(inertia(k)).with_wheels_at_start(wheels, t, omega(k)).unwrap()
+    };
+    let clock = Clock { start: 2.0, step: 0.125 };
+    for name in ["taylor", "kick-drift@suzuki-4", "two-turn:31@suzuki-4", "lie-poisson", "rk4"] {
+        let method = method(name).unwrap();
+        let mut ensemble = Ensemble::new().carrying(told.to_vec());
+        for k in 0..3 {
+            ensemble.push_omega(&inertia(k), UnitQuaternion::identity(), omega(k));
+        }
+        let mut ends = Vec::new();
+        let read = |rows: &Rows| {
+            ends.extend_from_slice(rows.states(0));
+            Ok::<(), EnsembleError>(())
+        };
+        ensemble.advance(&method, clock, &[80], read).unwrap();
+        for (k, end) in (0..3).zip(&ends) {
+            let body = of(&told, k, clock.start);
+            let start = body.enter_omega(Quat::identity(), omega(k).into()).unwrap();
+            // the speed is that of the start, where the motor works already
+            assert!((body.wheels()[1].speed(2.0, omega(k)) + 25.0).abs() < 1e-13);
+            let mut run = Run::from_point(&method, &body, start.to_f64(), clock).unwrap();
+            assert_eq!(*end, run.advance_to(80).unwrap().state, "{name}, member {k}");
+        }
+    }
+    let free = &told[..1];
+    let mut ensemble = Ensemble::new().carrying(free.to_vec());
+    for k in 0..3 {
+        let body = of(free, k, 0.0);
+        ensemble.push(&inertia(k), &body.state(UnitQuaternion::identity(), omega(k)).unwrap());
+        let of_member = ensemble.body(k as usize).unwrap();
+        let l = |body: &Body| body.momentum_of_wheels_at(0.0);
+        assert!((l(&of_member) - l(&body)).norm() < 1e-15 * l(&body).norm());
+    }
+    let mut failures = 0;
+    let mut motor = Ensemble::new().carrying(told.to_vec());
+    motor.push_omega(&inertia(0), UnitQuaternion::identity(), OMEGA);
+    let read = |rows: &Rows| {
+        let refused = rows.failures().all(|(_, _, error)| error.to_string().contains("while no motor works"));
+        failures += usize::from(refused && rows.failures().count() == 1);
+        Ok::<(), EnsembleError>(())
+    };
+    motor.at(&[1.0], read).unwrap();
+    assert_eq!(failures, 1);
 }
 
 /// Moments and wheels times a power of two: the same bits.

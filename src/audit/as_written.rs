@@ -1,5 +1,6 @@
 //! Vectors in space beside those of the motion, in the axes in which they were written.
 
+use super::bodies::Told;
 use super::deviation::{Allowances, Deviation, GROUPS};
 use super::program::Dynamics;
 use super::resolution::{Writing, Writings, triples};
@@ -20,6 +21,7 @@ pub(super) fn off_in_space(
     record: &Trajectory,
     reading: &Reading,
     found: &Deviation,
+    told: Option<&Told>,
     writings: &Writings,
     allowed: &Allowances,
 ) -> bool {
@@ -34,7 +36,7 @@ pub(super) fn off_in_space(
     let size = found.size;
     let rows = states(record, reading, &found.start.body, &triples(record.times.len(), GROUPS));
     let weights = Weights { attitude: found.attitude_noise, rates: found.rates_noise, size };
-    let Some(start) = fitted(&found.start, &rows, weights, true, false) else { return false };
+    let Some(start) = fitted(&found.start, told, &rows, weights, true, false) else { return false };
     let dynamics = Dynamics::new(&start.body);
     let scale = found.scale;
     let length = dynamics.momentum(start.row.omega).norm() * scale;

@@ -6,8 +6,9 @@
 //! is what the hypothesis leaves.
 
 use core::cmp::{Ordering, Reverse};
+use std::borrow::Cow;
 
-use super::bodies::reordered;
+use super::bodies::{Told, reordered};
 use super::candidates::{self, ORDERS};
 use super::columns::{Columns, Defects, Source};
 use super::program::{Dynamics, Law, Program, Turn};
@@ -16,7 +17,7 @@ use super::{
     AuditError, Convention, Direction, Frame, Question, Ranked, RateUnit, Reading, Suspect, Trajectory,
     Turns, shape,
 };
-use crate::body::Body;
+use crate::body::{Body, Problem};
 
 /// A reading whose kinematics leave more than this many times what the best leave is not tried, rad.
 const KINEMATIC_RATIO: f64 = 3.0;
@@ -66,7 +67,8 @@ pub(super) fn investigate(record: &Trajectory, question: &Question) -> Result<Fi
         return Err(AuditError::AtRest);
     }
     let windows = columns.windows();
-    let case = Case { columns, windows, claims: question.claims, bodies: orders(question) };
+    let (claims, bodies, told) = (question.claims, orders(question), question.told());
+    let case = Case { columns, windows, claims, bodies, told };
     let attitudes = candidates::attitudes(record, &question.claims);
     if attitudes.is_empty() {
         return Err(AuditError::NoReading);
@@ -83,7 +85,7 @@ pub(super) fn investigate(record: &Trajectory, question: &Question) -> Result<Fi
     let right = case.plausible(&readings, &case.right_programs());
     let mut right = case.run(right);
     if right.is_empty() {
-        return Err(AuditError::NoBody);
+        return Err(if case.told.is_some() { AuditError::NoStart } else { AuditError::NoBody });
     }
     case.sort(&mut right);
     let tied = case.tied(&right);
@@ -97,7 +99,9 @@ pub(super) fn investigate(record: &Trajectory, question: &Question) -> Result<Fi
 /// The body in the orders of its moments that are to be tried.
 fn orders(question: &Question) -> Vec<([usize; 3], Body)> {
     let Some(body) = &question.body else { return Vec::new() };
-    ORDERS.iter().filter_map(|&order| Some((order, reordered(body, order)?))).collect()
+    // the axes of wheels stay where they are
+    let orders = if question.wheels.is_empty() { &ORDERS[..] } else { &[[0, 1, 2]] };
+    orders.iter().filter_map(|&order| Some((order, reordered(body, order)?))).collect()
 }
 
 struct Case<'a> {
@@ -106,6 +110,8 @@ struct Case<'a> {
     claims: Convention,
     /// Empty where no body is given.
     bodies: Vec<([usize; 3], Body)>,
+    /// The body with wheels whose momenta follow from the start.
+    told: Option<Told>,
 }
 
 impl Case<'_> {
@@ -117,8 +123,8 @@ impl Case<'_> {
     /// Programs with one mistake.
     fn wrong_programs(&self) -> Vec<(Suspect, Program)> {
         let has_attitude = self.columns.record.attitude.is_some();
-        let forced =
-            self.bodies.first().is_some_and(|(_, body)| body.problem() != crate::body::Problem::Free);
+        let forced = self.told.is_some()
+            || self.bodies.first().is_some_and(|(_, body)| body.problem() != Problem::Free);
         let mut found = Vec::new();
         for frame in [Frame::Body, Frame::Space] {
             let right = Program::right(frame);
@@ -174,7 +180,7 @@ impl Case<'_> {
         let mut found: Vec<(f64, (Suspect, Reading, Program))> = all
             .map(|hypothesis| {
                 let (_, reading, program) = &hypothesis;
-                let dynamics = self.body(reading).map(Dynamics::new);
+                let dynamics = self.body(reading).map(|body| Dynamics::new(&body));
                 let dynamics = dynamics.as_ref().or(ball.as_ref());
                 let defect = dynamics.and_then(|dynamics| {
                     self.columns.kinematic(reading, program.turn, dynamics, &self.windows, every)
@@ -195,8 +201,12 @@ impl Case<'_> {
             .map(|inertia| Dynamics::new(&Body::free(inertia)))
     }
 
-    fn body(&self, reading: &Reading) -> Option<&Body> {
-        self.bodies.iter().find(|(order, _)| *order == reading.moments).map(|(_, body)| body)
+    fn body(&self, reading: &Reading) -> Option<Cow<'_, Body>> {
+        if let Some(told) = &self.told {
+            return told.started(self.columns.record, reading).map(Cow::Owned);
+        }
+        let found = self.bodies.iter().find(|(order, _)| *order == reading.moments);
+        found.map(|(_, body)| Cow::Borrowed(body))
     }
 
     /// The hypotheses in every order of moments, run over the windows; those far behind only over some.
@@ -216,7 +226,14 @@ impl Case<'_> {
                         suspect == Suspect::None || self.claims.moments.is_none_or(|claim| claim == *order);
                     if each_order { claimed } else { *order == reading.moments }
                 });
-                orders.map(|(order, body)| (Reading { moments: *order, ..reading }, body.clone())).collect()
+                let started = |body: &Body| match &self.told {
+                    Some(told) => told.started(self.columns.record, &reading),
+                    None => Some(body.clone()),
+                };
+                let of_order = |(order, body): &([usize; 3], Body)| {
+                    Some((Reading { moments: *order, ..reading }, started(body)?))
+                };
+                orders.filter_map(of_order).collect()
             };
             for (reading, body) in bodies {
                 let dynamics = Dynamics::new(&body);

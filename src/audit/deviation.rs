@@ -1,5 +1,6 @@
 //! How far a record is from the motion that starts like it, and what of that its noise explains.
 
+use super::bodies::Told;
 use super::program::Dynamics;
 use super::question::MOST;
 use super::resolution::{noise, triples};
@@ -111,12 +112,13 @@ fn noise_of(rows: &[usize], vectors: &[Vec3<f64>]) -> f64 {
     (squares.iter().sum::<f64>() / 3.0).sqrt()
 }
 
-/// Compares `record` by `reading` with the motion of `body`; `shape`: whose tensor may be fitted. A start is looked for at some
+/// Compares `record` by `reading` with the motion of `body`, which has the wheels that are `told`; `shape`: whose tensor may be fitted. A start is looked for at some
 /// rows; every row is judged.
 pub(super) fn deviation(
     record: &Trajectory,
     reading: &Reading,
     body: &Body,
+    told: Option<&Told>,
     shape: bool,
     allowed: &Allowances,
 ) -> Option<Deviation> {
@@ -151,7 +153,7 @@ pub(super) fn deviation(
         // beside a column that is far more exact the other would leave the start as it is
         let weights =
             Weights { attitude: attitude.max(APART * rates), rates: rates.max(APART * attitude), size };
-        let best = fitted(&first, &rows, weights, measured_rates, shape)
+        let best = fitted(&first, told, &rows, weights, measured_rates, shape)
             .and_then(|start| Distance::of(&start, &rows, size));
         // by the middle row: a few bad rows drag a fit, and leave the first row where it is
         let total = |distance: &Distance| {

@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use crate::body::WheelError;
 use crate::num::Shown;
 
 /// Why a record cannot be audited. Rows count from 0.
@@ -76,6 +77,22 @@ pub enum AuditError {
     /// Angular momentum alone, which tells nothing without a body.
     #[error("a record of angular momenta needs the body, whose moments turn them into angular velocities")]
     MomentumNeedsBody,
+    /// Wheels of a body that is not given.
+    #[error("wheels are told of a body that is not given; give its moments of inertia")]
+    WheelsNeedBody,
+    /// The body cannot carry the wheels.
+    #[error(transparent)]
+    Wheel(#[from] WheelError),
+    /// Angular momenta of a body with wheels.
+    #[error(
+        "a column of angular momenta does not tell whether that of the wheels is in it; leave it out, and record angular velocities"
+    )]
+    MomentumOfWheels,
+    /// The angular velocity at the first row is not known.
+    #[error(
+        "the momentum of a wheel that is free or driven follows from the angular velocity at the first row, which this record does not tell; record angular velocities, or attitudes that turn less from row to row"
+    )]
+    NoStart,
     /// Nothing turns.
     #[error("nothing turns in the record: every reading of it is the same")]
     AtRest,

@@ -1,5 +1,6 @@
 //! Records whose rows are all exchanged with a neighbour.
 
+use super::bodies::Told;
 use super::deviation::{Allowances, deviation};
 use super::{Attitudes, Fault, Judgement, Misplaced, Reading, Trajectory};
 use crate::body::Body;
@@ -16,6 +17,7 @@ pub(super) fn exchanged(
     record: &Trajectory,
     reading: &Reading,
     body: &Body,
+    told: Option<&Told>,
     allowed: &Allowances,
 ) -> Option<Fault> {
     let rows = record.times.len();
@@ -28,7 +30,7 @@ pub(super) fn exchanged(
         for row in pairs.clone() {
             swap(&mut swapped, row);
         }
-        let found = deviation(&swapped, reading, body, false, allowed)?;
+        let found = deviation(&swapped, reading, body, told, false, allowed)?;
         let largest = pairs.clone().map(|row| change(record, reading, row, row + 1)).fold(0.0, f64::max);
         let fault =
             Fault::Misplaced { what: Misplaced::Exchanged, row: first, count: 2 * pairs.len(), largest };

@@ -12,6 +12,7 @@ use super::faults::{discontinuity, faults, no_rotation};
 use super::misplaced::misplaced;
 use super::other_body::other_body as other_body_of;
 use super::other_torque::other_torque as other_torque_of;
+use super::other_wheel::other_wheel as other_wheel_of;
 use super::resolution::{Writings, rounding_turn, triples};
 use super::rows::typical_turn;
 use super::signature::signature as signature_of;
@@ -71,11 +72,13 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
     let tolerance = question.tolerance;
     let fits = question.body.is_none();
     let allowances = allowances(record, &reading, &body, question, &writings, angle_rounding);
-    let deviation = deviation(record, &reading, &body, fits, &allowances);
+    let told = question.told();
+    let deviation = deviation(record, &reading, &body, told.as_ref(), fits, &allowances);
     let noise = deviation.as_ref().map_or(rounding, |found| found.attitude_noise.max(found.rates_noise));
     let free = body.problem() == Problem::Free;
-    // the tensor of a record that is right comes from all of its rows
-    let fitted_body = deviation.as_ref().filter(|found| fits && found.judgement == Judgement::Right);
+    // of a record that is right the tensor, and the momenta of wheels, come from all of its rows
+    let follows = fits || told.is_some();
+    let fitted_body = deviation.as_ref().filter(|found| follows && found.judgement == Judgement::Right);
     let body = fitted_body.map_or(body, |found| found.start.body.clone());
     let has_omega = Columns::new(record).source != Source::Attitude;
     let rows = record.times.len();
@@ -93,7 +96,8 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
     let no_rotation = no_rotation(record, 2.0 * allowances.attitude.largest(rows));
     let off_as_written = || {
         let found = deviation.as_ref().filter(|_| by_motion == Judgement::Right);
-        found.is_some_and(|found| off_in_space(record, &reading, found, &writings, &allowances))
+        found
+            .is_some_and(|found| off_in_space(record, &reading, found, told.as_ref(), &writings, &allowances))
     };
     let contradicted = contradicted || no_rotation.is_some() || off_as_written();
     let mut by_motion =
@@ -117,7 +121,7 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
     if by_motion != Judgement::Right {
         faults.extend(discontinuity(record, &reading, rounding));
         if let Some(found) = &deviation {
-            match exchanged(record, &reading, &body, &allowances) {
+            match exchanged(record, &reading, &body, told.as_ref(), &allowances) {
                 Some(fault) => {
                     // each row is another's, whatever noise would hide
                     by_motion = Judgement::Wrong;
@@ -128,7 +132,7 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
         }
     }
     let claim = broken_claim(&reading, finding, question);
-    let (mut signature, mut other_body, mut other_torque) = (None, None, None);
+    let (mut signature, mut other_body, mut other_torque, mut other_wheel) = (None, None, None, None);
     let suspect = match (&finding.mistake, claim) {
         // what noise explains needs no mistake
         (Some(mistake), _) if by_motion == Judgement::Wrong => mistake.suspect.clone(),
@@ -138,17 +142,22 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
             Suspect::Discontinuity
         }
         _ => {
-            signature = signature_of(record, &reading, &body, noise);
-            if signature.is_none() {
+            other_wheel = told.as_ref().and_then(|told| other_wheel_of(record, &reading, told, &allowances));
+            if other_wheel.is_none() {
+                signature = signature_of(record, &reading, &body, noise);
+            }
+            let is_open = other_wheel.is_none() && signature.is_none();
+            if is_open {
                 other_body = other_body_of(record, question, &allowances);
             }
-            if signature.is_none() && other_body.is_none() {
+            if is_open && other_body.is_none() {
                 other_torque = other_torque_of(record, &reading, &body, off[0] + off[1], noise);
             }
             match (&signature, &other_body, &other_torque) {
                 (Some(found), ..) => Suspect::Integrator(found.method.clone()),
                 (_, Some(_), _) => Suspect::OtherBody,
                 (.., Some(_)) => Suspect::OtherTorque,
+                _ if other_wheel.is_some() => Suspect::OtherWheel,
                 _ => Suspect::None,
             }
         }
@@ -200,6 +209,7 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
         signature,
         other_body,
         other_torque,
+        other_wheel,
         faults,
         missing: missing.into_iter().filter(|(lacks, _)| *lacks).map(|(_, what)| what).collect(),
         traces,

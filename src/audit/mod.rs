@@ -22,6 +22,7 @@ mod misplaced;
 mod motion;
 mod other_body;
 mod other_torque;
+mod other_wheel;
 mod program;
 mod question;
 mod reading;
@@ -44,8 +45,8 @@ pub use reading::{Angles, Direction, Frame, Product, QuaternionOrder, Reading, T
 pub use step_length::step_length;
 pub use trajectory::{Attitudes, Digits, FEWEST_ROWS, Trajectory};
 pub use verdict::{
-    AttitudeError, Conservation, Judgement, OtherBody, OtherTorque, Ranked, Resolution, Signature, Suspect,
-    Tie, TieReason, Traces, Verdict,
+    AttitudeError, Conservation, Judgement, OtherBody, OtherTorque, OtherWheel, Ranked, Resolution,
+    Signature, Suspect, Tie, TieReason, Traces, Verdict,
 };
 
 /// The verdict on `record`.
@@ -74,8 +75,8 @@ pub use verdict::{
 /// # Ok::<(), polhode::Error>(())
 /// ```
 pub fn audit(record: &Trajectory, question: &Question) -> Result<Verdict, AuditError> {
-    question.check()?;
     record.check()?;
+    question.check(record)?;
     let finding = detective::investigate(record, question)?;
     judge::judge(record, question, finding)
 }

@@ -37,13 +37,14 @@ pub(super) fn follow(
     }
     let series = AdaptiveTaylor::to_rounding();
     if precise {
-        let prepare = |clock| prepared(&series, |method| method.prepare_dd(clock, body).ok());
+        let prepare =
+            |clock, acting: &Body| prepared(&series, |method| method.prepare_dd(clock, acting).ok());
         let rate = |point: &Point<Dd>| body.omega_of(point).norm();
-        return stepped(prepare, inside, start.time, rate, times, &mut |point| read(point.to_f64()));
+        return stepped(body, prepare, inside, start.time, rate, times, &mut |point| read(point.to_f64()));
     }
-    let prepare = |clock| prepared(&series, |method| method.prepare_f64(clock, body).ok());
+    let prepare = |clock, acting: &Body| prepared(&series, |method| method.prepare_f64(clock, acting).ok());
     let rate = |point: &Point<f64>| body.omega_of(point).norm();
-    stepped(prepare, inside.to_f64(), start.time, rate, times, &mut |point| read(*point))
+    stepped(body, prepare, inside.to_f64(), start.time, rate, times, &mut |point| read(*point))
 }
 
 /// The same in a list.
@@ -84,7 +85,8 @@ fn prepared<S: Precise>(
 }
 
 fn stepped<S: Precise>(
-    prepare: impl Fn(Clock) -> Option<(Box<dyn Step<S>>, bool)>,
+    body: &Body,
+    prepare: impl Fn(Clock, &Body) -> Option<(Box<dyn Step<S>>, bool)>,
     start: Point<S>,
     start_time: f64,
     rate_of: impl Fn(&Point<S>) -> f64,
@@ -93,20 +95,28 @@ fn stepped<S: Precise>(
 ) -> Option<()> {
     let (mut x, mut t) = (start, start_time);
     let (rate, mut way) = (rate_of(&start), 0.0);
+    // no step goes over the switching of a force or a motor
+    let switchings = body.switching_times();
+    let mut acting = body.acting(t, true);
     for (row, time) in times.enumerate() {
-        if time > t {
-            let (mut step, adaptive) = prepare(Clock { start: t, step: time - t })?;
+        while time > t {
+            let next = switchings.iter().copied().find(|switching| *switching > t);
+            let end = next.map_or(time, |next| next.min(time));
+            let (mut step, adaptive) = prepare(Clock { start: t, step: end - t }, &acting)?;
             let mut n = 1;
             if !adaptive {
-                n = ((time - t) * rate / STEP).ceil().clamp(1.0, 1e6) as u64;
-                step = prepare(Clock { start: t, step: (time - t) / n as f64 })?.0;
+                n = ((end - t) * rate / STEP).ceil().clamp(1.0, 1e6) as u64;
+                step = prepare(Clock { start: t, step: (end - t) / n as f64 }, &acting)?.0;
             }
             step.open(&mut x);
             step.advance(&mut x, n);
             let reached = step.reading(&x);
             x = Point::new(reached.attitude, reached.momentum_body);
-            way += rate_of(&x) * (time - t);
-            t = time;
+            way += rate_of(&x) * (end - t);
+            t = end;
+            if next == Some(t) {
+                acting = body.acting(t, true);
+            }
         }
         if !x.is_finite() || way > FARTHEST[1].max(FARTHEST[0] * row as f64) {
             return None;

@@ -22,7 +22,7 @@ pub(super) fn other_body(
     bare.body = None;
     let finding = investigate(record, &bare).ok()?;
     let first = finding.right.first()?;
-    let found = deviation(record, &first.reading, &first.body, true, allowances)?;
+    let found = deviation(record, &first.reading, &first.body, None, true, allowances)?;
     if found.judgement != Judgement::Right {
         return None;
     }

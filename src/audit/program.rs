@@ -1,7 +1,7 @@
 //! The programs that may have made a record: the equations of motion, and the mistakes that are made in them.
 
 use super::Frame;
-use crate::body::{Body, Field, Forces, Time};
+use crate::body::{Body, Field, Forces, Time, Wheels};
 use crate::rotation::{Quat, Vec3};
 
 /// How a program turns the attitude: `q̇ = ½ c q ω` or `½ c ω q`.
@@ -50,6 +50,9 @@ pub(super) struct Dynamics {
     inverse: Vec3<f64>,
     scale: f64,
     forces: Option<Forces<f64>>,
+    wheels: Option<Wheels>,
+    /// Where forces or motors are switched: the same between two switchings, and since when.
+    phases: Vec<(f64, Dynamics)>,
 }
 
 /// Turn of one step, rad.
@@ -63,6 +66,13 @@ type Phase = (Quat<f64>, Vec3<f64>);
 
 impl Dynamics {
     pub(super) fn new(body: &Body) -> Self {
+        let times = body.switching_times();
+        let first = times.first().map(|time| (f64::NEG_INFINITY, Self::smooth(&body.acting(*time, false))));
+        let others = times.iter().map(|time| (*time, Self::smooth(&body.acting(*time, true))));
+        Dynamics { phases: first.into_iter().chain(others).collect(), ..Self::smooth(body) }
+    }
+
+    fn smooth(body: &Body) -> Self {
         let rotor = body.rotor();
         let free = body.problem() == crate::body::Problem::Free;
         Dynamics {
@@ -71,6 +81,8 @@ impl Dynamics {
             inverse: rotor.inverse_moments(),
             scale: body.scale(),
             forces: (!free).then(|| body.field()),
+            wheels: body.momentum_of_wheels(),
+            phases: Vec::new(),
         }
     }
 
@@ -90,8 +102,30 @@ impl Dynamics {
         self.moments.0.into_iter().fold(0.0, f64::max)
     }
 
-    /// The state after `dt` s of the state (`attitude`, `omega`) at `t` s, with ω in the frame of the program.
+    /// The state after `dt` s, which are positive, of the state (`attitude`, `omega`) at `t` s, with ω in the frame of the program.
     pub(super) fn after(
+        &self,
+        program: &Program,
+        t: f64,
+        dt: f64,
+        attitude: Quat<f64>,
+        omega: Vec3<f64>,
+    ) -> (Quat<f64>, Vec3<f64>) {
+        if self.phases.is_empty() {
+            return self.between_switchings(program, t, dt, attitude, omega);
+        }
+        let (mut from, mut state) = (t, (attitude, omega));
+        for (n, (_, phase)) in self.phases.iter().enumerate() {
+            let to = self.phases.get(n + 1).map_or(t + dt, |(next, _)| next.min(t + dt));
+            if to > from {
+                state = phase.between_switchings(program, from, to - from, state.0, state.1);
+                from = to;
+            }
+        }
+        state
+    }
+
+    fn between_switchings(
         &self,
         program: &Program,
         t: f64,
@@ -108,6 +142,10 @@ impl Dynamics {
         if n.is_nan() || n > MOST_STEPS {
             return (attitude, omega);
         }
+        // the momentum of wheels turns ω in the body however slowly that turns
+        let by_wheels =
+            [t, t + dt].map(|t| self.turn_by_wheels(t)).into_iter().fold(0.0, f64::max) * dt.abs();
+        let n = n.max((by_wheels / STEP).ceil().min(MOST_STEPS));
         let h = dt / n;
         let mut x = (q, self.momentum_of(program, q, start));
         for k in 0..n as usize {
@@ -118,6 +156,12 @@ impl Dynamics {
         let q = q * self.axes.conjugate();
         let q = q * (1.0 / q.norm_squared().sqrt());
         (q, if program.frame == Frame::Body { self.axes.rotate(omega) } else { omega })
+    }
+
+    /// How fast the momentum of the wheels at the time `t` turns ω in the body at most, rad/s.
+    fn turn_by_wheels(&self, t: f64) -> f64 {
+        let least = self.inverse.0.into_iter().fold(0.0, f64::max);
+        self.wheels.as_ref().map_or(0.0, |wheels| wheels.at(Time::from_seconds(t)).norm().hi() * least)
     }
 
     fn momentum_of(&self, program: &Program, q: Quat<f64>, omega: Vec3<f64>) -> Vec3<f64> {

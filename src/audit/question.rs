@@ -1,7 +1,9 @@
 //! What is asked of a record, and what is claimed of it.
 
+use super::Trajectory;
+use super::bodies::Told;
 use super::{AngleUnit, Angles, AuditError, Direction, Frame, QuaternionOrder, RateUnit, Reading};
-use crate::body::Body;
+use crate::body::{Body, WheelAtStart};
 
 /// Most noise of the attitude that may be declared, rad, and the largest tolerance, rad and relative: more hides any motion.
 pub(super) const MOST: f64 = 0.1;
@@ -20,6 +22,9 @@ pub(super) const MOST: f64 = 0.1;
 pub struct Question {
     /// The body with what acts on it; `None`: a free body whose shape is found from the record.
     pub body: Option<Body>,
+    /// Wheels that the body carries besides, by their speed at the first row. The momentum of one that is free or driven follows from
+    /// how the body turns there.
+    pub wheels: Vec<WheelAtStart>,
     /// Largest error of a record that is right, rad and relative; at most 0.1.
     pub tolerance: f64,
     /// Noise of the record that is declared; without it a noisy record is undecided at best.
@@ -82,10 +87,32 @@ impl Question {
     /// Is the record right, to 1e-6, for this body, in whatever convention?
     #[must_use]
     pub fn new(body: Option<Body>) -> Self {
-        Question { body, tolerance: 1e-6, noise: Noise::default(), claims: Convention::default() }
+        Question {
+            body,
+            wheels: Vec::new(),
+            tolerance: 1e-6,
+            noise: Noise::default(),
+            claims: Convention::default(),
+        }
     }
 
-    pub(super) fn check(&self) -> Result<(), AuditError> {
+    /// The body with the wheels by their speed; `None` without such wheels, or without a body.
+    pub(super) fn told(&self) -> Option<Told> {
+        let body = self.body.as_ref().filter(|_| !self.wheels.is_empty())?;
+        Some(Told { body: body.clone(), wheels: self.wheels.clone() })
+    }
+
+    pub(super) fn check(&self, record: &Trajectory) -> Result<(), AuditError> {
+        match &self.body {
+            None if !self.wheels.is_empty() => return Err(AuditError::WheelsNeedBody),
+            None => {}
+            Some(body) => {
+                let carrying = body.clone().with_wheels_at_start(&self.wheels, 0.0, Default::default())?;
+                if record.momentum.is_some() && !carrying.wheels().is_empty() {
+                    return Err(AuditError::MomentumOfWheels);
+                }
+            }
+        }
         if !(self.tolerance > 0.0 && self.tolerance <= MOST) {
             return Err(AuditError::Tolerance { value: self.tolerance, most: MOST });
         }

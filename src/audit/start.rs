@@ -2,6 +2,7 @@
 
 use nalgebra::Matrix3;
 
+use super::bodies::Told;
 use super::motion::motion;
 use super::states::Row;
 use crate::body::{Body, Problem};
@@ -64,9 +65,10 @@ pub(super) fn distances(start: &Start, rows: &[Row], precise: bool) -> Option<Ve
 
 /// The start that fits `rows` best, by Gauss's and Newton's iteration over a horizon that grows: on a short one the start of the
 /// record is near enough, and a fit over it is near enough on the next. With `rates`, ω is compared too; with `shape`, the tensor
-/// is fitted as well.
+/// is fitted as well. The wheels that are `told` have the momenta that each start gives them.
 pub(super) fn fitted(
     first: &Start,
+    told: Option<&Told>,
     rows: &[Row],
     weights: Weights,
     rates: bool,
@@ -79,7 +81,7 @@ pub(super) fn fitted(
         let within = rows.iter().take_while(|row| row.time - first.row.time <= reach).count().max(8);
         let within = &rows[..within.min(rows.len())];
         for _ in 0..ITERATIONS {
-            let (next, moved) = improved(&best, within, weights, rates, shape)?;
+            let (next, moved) = improved(&best, told, within, weights, rates, shape)?;
             best = next;
             if moved < 1e-4 {
                 break;
@@ -103,7 +105,14 @@ fn is_lost(start: &Start, rows: &[Row], weights: Weights) -> Option<bool> {
 }
 
 /// One iteration, and how far it moved the start, in units of its uncertainty.
-fn improved(start: &Start, rows: &[Row], weights: Weights, rates: bool, shape: bool) -> Option<(Start, f64)> {
+fn improved(
+    start: &Start,
+    told: Option<&Told>,
+    rows: &[Row],
+    weights: Weights,
+    rates: bool,
+    shape: bool,
+) -> Option<(Start, f64)> {
     let residual = |start: &Start| -> Option<Vec<f64>> {
         let all = distances(start, rows, false)?;
         Some(
@@ -124,7 +133,7 @@ fn improved(start: &Start, rows: &[Row], weights: Weights, rates: bool, shape: b
         let (there, by) = [CHANGE, -CHANGE].into_iter().find_map(|by| {
             let mut change = [0.0; UNKNOWNS];
             change[n] = by;
-            Some((residual(&changed(start, change, weights.size)?)?, by))
+            Some((residual(&changed(start, told, change, weights.size)?)?, by))
         })?;
         slopes.push(there.iter().zip(&here).map(|(a, b)| (a - b) / by).collect::<Vec<f64>>());
     }
@@ -151,20 +160,24 @@ fn improved(start: &Start, rows: &[Row], weights: Weights, rates: bool, shape: b
     // a long way is no linear problem, and one that leaves what a body can be is too long
     let longest = step.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
     let part = if longest > 0.2 { 0.2 / longest } else { 1.0 };
-    let next =
-        (0..HALVINGS).find_map(|k| changed(start, step.map(|x| x * libm::scalbn(part, -k)), weights.size))?;
+    let next = (0..HALVINGS)
+        .find_map(|k| changed(start, told, step.map(|x| x * libm::scalbn(part, -k)), weights.size))?;
     Some((next, moved.sqrt()))
 }
 
 /// The start with a turn, rad, and an angular velocity, in units of `size`, added in body axes, and entries of the tensor in units
 /// of its trace.
-fn changed(start: &Start, change: [f64; UNKNOWNS], size: f64) -> Option<Start> {
+fn changed(start: &Start, told: Option<&Told>, change: [f64; UNKNOWNS], size: f64) -> Option<Start> {
     let [a, b, c, x, y, z, tensor @ ..] = change;
     let mut row = start.row;
     row.attitude = row.attitude.map(|q| q * turn_by(Vec3([a, b, c])));
     row.omega = row.omega + Vec3([x, y, z]) * size;
     if tensor == [0.0; 6] {
-        return Some(Start { row, body: start.body.clone() });
+        let body = match told {
+            Some(told) => told.at(row.time, row.omega)?,
+            None => start.body.clone(),
+        };
+        return Some(Start { row, body });
     }
     let old = start.body.inertia().tensor();
     let [xx, yy, zz, xy, xz, yz] = tensor.map(|entry| entry * old.trace());

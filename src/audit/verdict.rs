@@ -57,6 +57,8 @@ pub enum Suspect {
     OtherBody,
     /// L changes as another torque would change it.
     OtherTorque,
+    /// A wheel has another speed, or is held in place of free.
+    OtherWheel,
 }
 
 /// A reading with what speaks for it.
@@ -194,6 +196,18 @@ pub struct OtherTorque {
     pub constant: Option<(Frame, [f64; 3])>,
 }
 
+/// The wheel that is not as it was told, of those of [`Question::wheels`](super::Question::wheels).
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct OtherWheel {
+    /// Its number, from 1, in the order in which they were told.
+    pub number: usize,
+    /// The speed that it has at the first row, rad/s.
+    pub speed: f64,
+    /// Whether it is held at it.
+    pub is_held: bool,
+}
+
 /// Errors at rows of the record, for figures; at most some 2000 rows.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
@@ -245,6 +259,8 @@ pub struct Verdict {
     pub other_body: Option<OtherBody>,
     /// The torque that acts beside those that are told.
     pub other_torque: Option<OtherTorque>,
+    /// The wheel that has another speed or is of another kind than was told, where that explains the record.
+    pub other_wheel: Option<OtherWheel>,
     /// What is odd about sampling and writing.
     pub faults: Vec<Fault>,
     /// What the record lacks.
@@ -265,7 +281,7 @@ impl fmt::Display for Judgement {
 
 impl fmt::Display for Suspect {
     /// `none`, `kinematics-sign`, `omega-frame`, `transposed`, `moments-order`, `degrees`, `gyroscopic-term-missing`,
-    /// `gyroscopic-sign`, `integrator:NAME`, `discontinuity`, `other-body` or `other-torque`.
+    /// `gyroscopic-sign`, `integrator:NAME`, `discontinuity`, `other-body`, `other-torque` or `other-wheel`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Suspect::None => "none",
@@ -280,6 +296,7 @@ impl fmt::Display for Suspect {
             Suspect::Discontinuity => "discontinuity",
             Suspect::OtherBody => "other-body",
             Suspect::OtherTorque => "other-torque",
+            Suspect::OtherWheel => "other-wheel",
         })
     }
 }
@@ -309,6 +326,17 @@ impl fmt::Display for OtherBody {
         write!(
             f,
             "The motion is that of another body: {which} {a:.6} : {b:.6} : {c:.6}, of the same trace as those given."
+        )
+    }
+}
+
+impl fmt::Display for OtherWheel {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let OtherWheel { number, speed, is_held } = self;
+        let kind = if *is_held { "held" } else { "not held" };
+        write!(
+            f,
+            "The motion is that of a body whose wheel number {number} is {kind}, with a speed of {speed:.6} rad/s at the first row."
         )
     }
 }

@@ -4,7 +4,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 
 use super::field::{Field, Forces, Witness};
 use super::law::Evaluated;
-use super::wheel::{OnCarrier, Wheel, WheelError, Wheels};
+use super::wheel::{OnCarrier, Wheel, WheelAtStart, WheelError, Wheels};
 use super::{Conserved, Exit, Force, LinearPotential, Point, Rotor, State, StateError, Time};
 use crate::inertia::Inertia;
 use crate::num::{Dd, Precise, Real};
@@ -134,6 +134,19 @@ impl Body {
             (self.inertia, self.locked) = (inertia, Some(locked));
         }
         Ok(self.changed(|wheel| *wheel, |force| Some(force.clone())))
+    }
+
+    /// The same body with `wheels`, from a start at the time `t`, s, where it turns at `omega_body`, rad/s, body axes.
+    ///
+    /// # Errors
+    /// As of [`with_wheel`](Self::with_wheel).
+    pub fn with_wheels_at_start(
+        self,
+        wheels: &[WheelAtStart],
+        t: f64,
+        omega_body: Vector3<f64>,
+    ) -> Result<Self, WheelError> {
+        wheels.iter().try_fold(self, |body, wheel| body.with_wheel(wheel.of_start(t, omega_body)))
     }
 
     /// The body with its wheels changed, and with what is left of its forces.

@@ -41,4 +41,4 @@ pub use rotor::Rotor;
 pub(crate) use rotor::{Gyroscopic, kinetic_energy};
 pub use state::State;
 pub use time::{Clock, Time};
-pub use wheel::{Wheel, WheelError, Wheels};
+pub use wheel::{Wheel, WheelAtStart, WheelError, Wheels};

@@ -163,8 +163,13 @@ impl Wheel {
         if !(from.is_finite() && from < to) {
             return Err(WheelError::Interval { from, to });
         }
+        Ok(self.driven_since(f64::NEG_INFINITY, torque, [from, to], omega_body))
+    }
+
+    /// The same with its speed at the time `t`, s, with a motor that is as it must be.
+    fn driven_since(self, t: f64, torque: f64, [from, to]: [f64; 2], omega_body: Vector3<f64>) -> Self {
         let momentum = self.before_motor(omega_body);
-        Ok(Wheel { drive: Drive::Free { momentum, since: from, torque, from, to }, ..self })
+        Wheel { drive: Drive::Free { momentum, since: t.clamp(from, to), torque, from, to }, ..self }
     }
 
     /// Its axis, of length 1, body axes.
@@ -261,6 +266,84 @@ impl Wheel {
     }
 }
 
+/// A wheel by its speed at the start of a motion that is not known yet: the momentum of one that is not held depends on how the body turns
+/// then.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use polhode::body::{Wheel, WheelAtStart};
+/// let wheel = WheelAtStart::free(Wheel::new(Vector3::x(), 0.1, 20.0)?);
+/// let omega = Vector3::new(3.0, 1.0, 0.0);
+/// assert_eq!(wheel.of_start(0.0, omega), Wheel::new(Vector3::x(), 0.1, 20.0)?.free(omega));
+/// # Ok::<(), polhode::Error>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
+pub struct WheelAtStart {
+    held: Wheel,
+    drive: DriveAtStart,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum DriveAtStart {
+    Held,
+    Free,
+    /// The torque, N m, and from when to when, s.
+    Motor(f64, [f64; 2]),
+}
+
+impl WheelAtStart {
+    /// The wheel as it is, whose momentum is the same from any start.
+    pub fn held(held: Wheel) -> Self {
+        WheelAtStart { held, drive: DriveAtStart::Held }
+    }
+
+    /// The wheel `held` at the start, which then turns freely.
+    pub fn free(held: Wheel) -> Self {
+        WheelAtStart { held, drive: DriveAtStart::Free }
+    }
+
+    /// The wheel `held` at the start with the motor of [`Wheel::driven`].
+    ///
+    /// # Errors
+    /// As of [`Wheel::driven`].
+    pub fn driven(held: Wheel, torque: f64, times: [f64; 2]) -> Result<Self, WheelError> {
+        let _ = held.driven(torque, times, Vector3::zeros())?;
+        Ok(WheelAtStart { held, drive: DriveAtStart::Motor(torque, times) })
+    }
+
+    /// Whether it is held at its speed.
+    #[must_use]
+    pub fn is_held(&self) -> bool {
+        self.drive == DriveAtStart::Held && self.held.is_held()
+    }
+
+    /// The wheel held at the speed of the start.
+    pub fn at_speed(&self) -> Wheel {
+        self.held
+    }
+
+    /// The same wheel with the speed `speed`, rad/s, at the start.
+    ///
+    /// # Errors
+    /// A speed that is not finite.
+    pub fn with_speed(self, speed: f64) -> Result<Self, WheelError> {
+        if !speed.is_finite() {
+            return Err(WheelError::NotFinite { quantity: "the speed", value: speed });
+        }
+        Ok(WheelAtStart { held: Wheel { drive: Drive::Held { speed }, ..self.held }, ..self })
+    }
+
+    /// The wheel of a body that turns at `omega_body`, rad/s, body axes, at the time `t`, s, of the start.
+    pub fn of_start(&self, t: f64, omega_body: Vector3<f64>) -> Wheel {
+        match self.drive {
+            DriveAtStart::Held => self.held,
+            DriveAtStart::Free => self.held.free(omega_body),
+            DriveAtStart::Motor(torque, times) => self.held.driven_since(t, torque, times, omega_body),
+        }
+    }
+}
+
 impl Drive {
     /// l = `momentum` at the time `since`, and a motor that works for ever.
     fn always(momentum: Dd, since: f64, torque: f64) -> Self {
@@ -277,6 +360,21 @@ impl fmt::Display for Wheel {
             Drive::Free { momentum, since, torque, from, to } => {
                 let (high, low) = (momentum.hi(), momentum.lo());
                 write!(f, "{high:?}+{low:?} at {since:?}, {torque:?} from {from:?} to {to:?}")
+            }
+        }
+    }
+}
+
+impl fmt::Display for WheelAtStart {
+    /// `ax,ay,az,I@SPEED`, and behind it `,free` or `,torque=T,from=t,until=t`, in kg m², rad/s, N m and s: as the flag `--wheel` takes it.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.held)?;
+        match self.drive {
+            DriveAtStart::Held => Ok(()),
+            DriveAtStart::Free => f.write_str(",free"),
+            DriveAtStart::Motor(torque, [from, to]) => {
+                write!(f, ",torque={torque:?},from={from:?}")?;
+                if to < f64::INFINITY { write!(f, ",until={to:?}") } else { Ok(()) }
             }
         }
     }

@@ -94,8 +94,8 @@ impl Advise {
                 return Err(Error::Input(format!("--exclude: {error}")));
             }
         }
-        let body = self.motion.body()?;
-        let start = body.leave(&self.motion.start(&body)?);
+        let body = self.motion.body(self.start_time)?;
+        let start = body.leave(&self.motion.start(&body, self.start_time)?);
         let mut demand = Demand::new(self.until, self.attitude_error);
         demand.energy_error = self.energy_error;
         demand.budget = self.budget;

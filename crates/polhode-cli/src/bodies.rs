@@ -73,8 +73,14 @@ fn quantities(body: &NamedBody) -> Vec<(&'static str, &'static str, Cell)> {
         ("eccentricity", "", orbit.map(|found| found.eccentricity).into()),
         ("mean_anomaly", "rad", orbit.map(|found| found.mean_anomaly).into()),
         ("orbit_source", "", orbit.map(|found| found.source).into()),
+        ("wheels", "", (!body.wheels.is_empty()).then(|| wheels(body).join(" ")).as_deref().into()),
     ]);
     all
+}
+
+/// The wheels as the flag `--wheel` has them.
+fn wheels(body: &NamedBody) -> Vec<String> {
+    body.wheels.iter().map(ToString::to_string).collect()
 }
 
 /// A row a body; a terminal shows what tells them apart.
@@ -101,7 +107,7 @@ fn sheet(body: &NamedBody) -> String {
     ];
     let mut table = Table::new("body", "A body of the catalogue.", columns);
     for (name, unit, value) in quantities(body) {
-        let told_below = name.ends_with("source") || matches!(name, "summary" | "frame" | "epoch");
+        let told_below = name.ends_with("source") || matches!(name, "summary" | "frame" | "epoch" | "wheels");
         if !told_below && value != Cell::Empty {
             let unit = if name.starts_with("moment") { body.unit } else { unit };
             table.push(row![name, value, unit]);
@@ -112,8 +118,9 @@ fn sheet(body: &NamedBody) -> String {
     let orbit = body.orbit.as_ref().map_or(String::new(), |found| {
         format!("turned by the gravity gradient of {} ({})\n", found.primary, found.source)
     });
+    let wheels: String = wheels(body).iter().map(|wheel| format!("carries --wheel {wheel}\n")).collect();
     format!(
-        "{}\n{}\nsource: {}\n{attitude}{of_attitude}\n{orbit}",
+        "{}\n{}\nsource: {}\n{attitude}{of_attitude}\n{orbit}{wheels}",
         table.terminal(),
         body.summary,
         body.source

@@ -92,9 +92,9 @@ impl Motion {
         let (body, of_file) = self.body.free()?;
         let body = self
             .wheels
-            .carried(body, of_file, |held| self.start.inside(held, self.body.published_start()))?;
+            .carried(body, of_file, 0.0, |held| self.start.inside(held, 0.0, self.body.published_start()))?;
         let published = self.body.published_start();
-        let start = self.start.inside(&body, published.clone())?;
+        let start = self.start.inside(&body, 0.0, published.clone())?;
         let format = Format::of(self.format, self.out.as_deref())?;
         if !body.wheels().is_empty() {
             let motion = GyrostatMotion::from_point(&body, start);

@@ -1,6 +1,6 @@
 //! Wheels of a body: as text of a flag, in TOML and in JSON.
 
-use polhode::body::{Wheel, WheelError};
+use polhode::body::{Wheel, WheelAtStart};
 use polhode::units::RateUnit;
 use serde_json::Value;
 use toml::Spanned;
@@ -10,191 +10,139 @@ use crate::error::Error;
 use crate::numbers::{list, number};
 use crate::toml_file::Section;
 
-/// A wheel as it is given: of those that are not held the momentum depends on how the body turns at the start.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GivenWheel {
-    held: Wheel,
-    drive: Drive,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Drive {
-    Held,
-    Free,
-    /// The torque, N m, and from when to when, s.
-    Motor(f64, [f64; 2]),
-}
-
 /// Of a wheel in a file.
 const KEYS: [&str; 8] = ["axis", "inertia", "speed", "speed_unit", "free", "torque", "from", "until"];
 
 /// What a text has to look like.
 const FORM: &str = "write it as ax,ay,az,I@3000rpm, with ,free or ,torque=T[,from=t][,until=t] behind it";
 
-impl GivenWheel {
-    /// From `ax,ay,az,I@SPEED[,free|,torque=T[,from=t][,until=t]]`; a speed without unit is in rad/s.
-    ///
-    /// # Errors
-    /// What is wrong with the text, or with the wheel.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        let (front, behind) = text.split_once('@').ok_or_else(|| format!("no '@' and speed; {FORM}"))?;
-        let found = list(front)?;
-        let [x, y, z, inertia]: [f64; 4] = found
-            .try_into()
-            .map_err(|found: Vec<f64>| format!("{} numbers before '@', 4 needed; {FORM}", found.len()))?;
-        let mut parts = behind.split(',');
-        let speed = parts.next().unwrap_or_default();
-        let speed = speed_of(speed).map_err(|error| format!("the speed: {error}"))?;
-        let (mut free, mut torque, mut from, mut until) = (false, None, None, None);
-        for part in parts {
-            let (key, value) = part.trim().split_once('=').unwrap_or((part.trim(), ""));
-            let place = match (key, value) {
-                ("free", "") => {
-                    free = true;
-                    continue;
-                }
-                ("torque", _) => &mut torque,
-                ("from", _) => &mut from,
-                ("until", _) => &mut until,
-                _ => return Err(format!("'{}' is unknown; {FORM}", part.trim())),
-            };
-            let value = number(value).map_err(|error| format!("{key}: {error}"))?;
-            if place.replace(value).is_some() {
-                return Err(format!("{key} is given twice"));
+/// From `ax,ay,az,I@SPEED[,free|,torque=T[,from=t][,until=t]]`; a speed without unit is in rad/s.
+///
+/// # Errors
+/// What is wrong with the text, or with the wheel.
+pub fn parse(text: &str) -> Result<WheelAtStart, String> {
+    let (front, behind) = text.split_once('@').ok_or_else(|| format!("no '@' and speed; {FORM}"))?;
+    let found = list(front)?;
+    let [x, y, z, inertia]: [f64; 4] = found
+        .try_into()
+        .map_err(|found: Vec<f64>| format!("{} numbers before '@', 4 needed; {FORM}", found.len()))?;
+    let mut parts = behind.split(',');
+    let speed = parts.next().unwrap_or_default();
+    let speed = speed_of(speed).map_err(|error| format!("the speed: {error}"))?;
+    let (mut free, mut torque, mut from, mut until) = (false, None, None, None);
+    for part in parts {
+        let (key, value) = part.trim().split_once('=').unwrap_or((part.trim(), ""));
+        let place = match (key, value) {
+            ("free", "") => {
+                free = true;
+                continue;
             }
-        }
-        Self::new([x, y, z], inertia, speed, Told { free, torque, from, until })
-    }
-
-    fn new(axis: [f64; 3], inertia: f64, speed: f64, told: Told) -> Result<Self, String> {
-        let held = Wheel::new(axis.into(), inertia, speed).map_err(|error| error.to_string())?;
-        let drive = match told {
-            Told { free: true, torque: Some(_), .. } => {
-                return Err(
-                    "free and torque exclude each other; before and behind its motor's work a wheel is free"
-                        .into(),
-                );
-            }
-            Told { torque: Some(torque), from, until, .. } => {
-                Drive::Motor(torque, [from.unwrap_or(0.0), until.unwrap_or(f64::INFINITY)])
-            }
-            Told { from: None, until: None, free, .. } => {
-                if free {
-                    Drive::Free
-                } else {
-                    Drive::Held
-                }
-            }
-            _ => return Err("from and until are of a motor; give its torque too".into()),
+            ("torque", _) => &mut torque,
+            ("from", _) => &mut from,
+            ("until", _) => &mut until,
+            _ => return Err(format!("'{}' is unknown; {FORM}", part.trim())),
         };
-        let given = GivenWheel { held, drive };
-        // what is wrong with a motor is so for any start
-        let _ = given.of_start([0.0; 3]).map_err(|error| error.to_string())?;
-        Ok(given)
-    }
-
-    /// Those of the list `wheels` of a TOML file; none where there is no such key.
-    ///
-    /// # Errors
-    /// As [`of_toml`](Self::of_toml), and a value that is no list of tables.
-    pub fn list_of_toml(section: &Section<'_>) -> Result<Vec<Self>, Error> {
-        let needed = || {
-            section.at(
-                "wheels",
-                "needed is a list of tables {axis = [x, y, z], inertia = J, speed = \"3000rpm\"}",
-            )
-        };
-        let Some(value) = section.value("wheels") else { return Ok(Vec::new()) };
-        let DeValue::Array(tables) = value.get_ref() else { return Err(needed()) };
-        let wheel = |table: &Spanned<DeValue<'_>>| {
-            let keys = table.get_ref().as_table().ok_or_else(needed)?;
-            Self::of_toml(&Section { file: section.file, place: table.span().start, keys })
-        };
-        tables.iter().map(wheel).collect()
-    }
-
-    /// From a table of a TOML file with the keys `axis`, `inertia`, `speed`, and `free` or `torque`, `from`, `until`.
-    ///
-    /// # Errors
-    /// A key that is unknown or missing, with its line, or what is wrong with the wheel.
-    pub fn of_toml(section: &Section<'_>) -> Result<Self, Error> {
-        section.only("a wheel", &KEYS)?;
-        let one = |key: &str| Ok::<_, Error>(section.numbers::<1>(key)?.map(|[number]| number));
-        let missing = |key: &str, remedy: &str| {
-            section.file.error(section.place, &format!("key '{key}': missing in this wheel; {remedy}"))
-        };
-        let axis =
-            section.numbers::<3>("axis")?.ok_or_else(|| missing("axis", "give [x, y, z], body axes"))?;
-        let inertia = section.positive("inertia")?.ok_or_else(|| missing("inertia", "give it in kg m^2"))?;
-        let told = match section.value("speed").map(Spanned::get_ref) {
-            None => return Err(missing("speed", "give it as \"3000rpm\"")),
-            Some(DeValue::String(text)) => Speed::Text(text.to_string()),
-            Some(_) => Speed::Number(one("speed")?.unwrap_or_default()),
-        };
-        let speed = told.in_unit(section.text("speed_unit")?).map_err(|error| section.at("speed", &error))?;
-        let free = match section.value("free").map(Spanned::get_ref) {
-            None => false,
-            Some(DeValue::Boolean(free)) => *free,
-            Some(_) => return Err(section.at("free", "needed is true or false")),
-        };
-        let [torque, from, until] = [one("torque")?, section.seconds("from")?, section.seconds("until")?];
-        let wheel = Self::new(axis, inertia, speed, Told { free, torque, from, until });
-        wheel.map_err(|error| section.file.error(section.place, &error))
-    }
-
-    /// From an object of JSON with the same keys.
-    ///
-    /// # Errors
-    /// What is wrong with it.
-    pub fn of_json(object: &Value) -> Result<Self, String> {
-        let keys = object.as_object().ok_or("a wheel is no object of JSON")?;
-        if let Some(unknown) = keys.keys().find(|key| !KEYS.contains(&key.as_str())) {
-            return Err(format!("\"{unknown}\" is unknown in a wheel; known: {}", KEYS.join(", ")));
-        }
-        let number = |key: &str| match &object[key] {
-            Value::Null => Ok(None),
-            value => value.as_f64().map(Some).ok_or_else(|| format!("\"{key}\" of a wheel is no number")),
-        };
-        let needed = |key: &str| format!("\"{key}\" is missing in a wheel");
-        let axis: [f64; 3] = serde_json::from_value(object["axis"].clone())
-            .map_err(|_| "\"axis\" of a wheel is no list of 3 numbers".to_string())?;
-        let inertia = number("inertia")?.ok_or_else(|| needed("inertia"))?;
-        let told = match &object["speed"] {
-            Value::String(text) => Speed::Text(text.clone()),
-            _ => Speed::Number(number("speed")?.ok_or_else(|| needed("speed"))?),
-        };
-        let speed = told.in_unit(object["speed_unit"].as_str())?;
-        let free = match &object["free"] {
-            Value::Null => false,
-            Value::Bool(free) => *free,
-            _ => return Err("\"free\" of a wheel is neither true nor false".into()),
-        };
-        let [torque, from, until] = [number("torque")?, number("from")?, number("until")?];
-        Self::new(axis, inertia, speed, Told { free, torque, from, until })
-    }
-
-    /// Whether it is held at its speed.
-    #[must_use]
-    pub fn is_held(&self) -> bool {
-        self.drive == Drive::Held
-    }
-
-    /// The wheel held at the speed of its start.
-    pub fn held(&self) -> Wheel {
-        self.held
-    }
-
-    /// The wheel of a body that turns at `omega`, rad/s, body axes, at the start.
-    ///
-    /// # Errors
-    /// A motor that works during no interval.
-    pub fn of_start(&self, omega: [f64; 3]) -> Result<Wheel, WheelError> {
-        match self.drive {
-            Drive::Held => Ok(self.held),
-            Drive::Free => Ok(self.held.free(omega.into())),
-            Drive::Motor(torque, times) => self.held.driven(torque, times, omega.into()),
+        let value = number(value).map_err(|error| format!("{key}: {error}"))?;
+        if place.replace(value).is_some() {
+            return Err(format!("{key} is given twice"));
         }
     }
+    driven([x, y, z], inertia, speed, Told { free, torque, from, until })
+}
+
+/// The wheel that is held, free or driven as `told`.
+fn driven(axis: [f64; 3], inertia: f64, speed: f64, told: Told) -> Result<WheelAtStart, String> {
+    let held = Wheel::new(axis.into(), inertia, speed).map_err(|error| error.to_string())?;
+    match told {
+        Told { free: true, torque: Some(_), .. } => {
+            Err("free and torque exclude each other; before and behind its motor's work a wheel is free"
+                .into())
+        }
+        Told { torque: Some(torque), from, until, .. } => {
+            let times = [from.unwrap_or(0.0), until.unwrap_or(f64::INFINITY)];
+            WheelAtStart::driven(held, torque, times).map_err(|error| error.to_string())
+        }
+        Told { from: None, until: None, free: true, .. } => Ok(WheelAtStart::free(held)),
+        Told { from: None, until: None, .. } => Ok(WheelAtStart::held(held)),
+        _ => Err("from and until are of a motor; give its torque too".into()),
+    }
+}
+
+/// Those of the list `wheels` of a TOML file; none where there is no such key.
+///
+/// # Errors
+/// As [`of_toml`], and a value that is no list of tables.
+pub fn list_of_toml(section: &Section<'_>) -> Result<Vec<WheelAtStart>, Error> {
+    let needed = || {
+        section
+            .at("wheels", "needed is a list of tables {axis = [x, y, z], inertia = J, speed = \"3000rpm\"}")
+    };
+    let Some(value) = section.value("wheels") else { return Ok(Vec::new()) };
+    let DeValue::Array(tables) = value.get_ref() else { return Err(needed()) };
+    let wheel = |table: &Spanned<DeValue<'_>>| {
+        let keys = table.get_ref().as_table().ok_or_else(needed)?;
+        of_toml(&Section { file: section.file, place: table.span().start, keys })
+    };
+    tables.iter().map(wheel).collect()
+}
+
+/// From a table of a TOML file with the keys `axis`, `inertia`, `speed`, and `free` or `torque`, `from`, `until`.
+///
+/// # Errors
+/// A key that is unknown or missing, with its line, or what is wrong with the wheel.
+pub fn of_toml(section: &Section<'_>) -> Result<WheelAtStart, Error> {
+    section.only("a wheel", &KEYS)?;
+    let one = |key: &str| Ok::<_, Error>(section.numbers::<1>(key)?.map(|[number]| number));
+    let missing = |key: &str, remedy: &str| {
+        section.file.error(section.place, &format!("key '{key}': missing in this wheel; {remedy}"))
+    };
+    let axis = section.numbers::<3>("axis")?.ok_or_else(|| missing("axis", "give [x, y, z], body axes"))?;
+    let inertia = section.positive("inertia")?.ok_or_else(|| missing("inertia", "give it in kg m^2"))?;
+    let told = match section.value("speed").map(Spanned::get_ref) {
+        None => return Err(missing("speed", "give it as \"3000rpm\"")),
+        Some(DeValue::String(text)) => Speed::Text(text.to_string()),
+        Some(_) => Speed::Number(one("speed")?.unwrap_or_default()),
+    };
+    let speed = told.in_unit(section.text("speed_unit")?).map_err(|error| section.at("speed", &error))?;
+    let free = match section.value("free").map(Spanned::get_ref) {
+        None => false,
+        Some(DeValue::Boolean(free)) => *free,
+        Some(_) => return Err(section.at("free", "needed is true or false")),
+    };
+    let [torque, from, until] = [one("torque")?, section.seconds("from")?, section.seconds("until")?];
+    let wheel = driven(axis, inertia, speed, Told { free, torque, from, until });
+    wheel.map_err(|error| section.file.error(section.place, &error))
+}
+
+/// From an object of JSON with the same keys.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn of_json(object: &Value) -> Result<WheelAtStart, String> {
+    let keys = object.as_object().ok_or("a wheel is no object of JSON")?;
+    if let Some(unknown) = keys.keys().find(|key| !KEYS.contains(&key.as_str())) {
+        return Err(format!("\"{unknown}\" is unknown in a wheel; known: {}", KEYS.join(", ")));
+    }
+    let number = |key: &str| match &object[key] {
+        Value::Null => Ok(None),
+        value => value.as_f64().map(Some).ok_or_else(|| format!("\"{key}\" of a wheel is no number")),
+    };
+    let needed = |key: &str| format!("\"{key}\" is missing in a wheel");
+    let axis: [f64; 3] = serde_json::from_value(object["axis"].clone())
+        .map_err(|_| "\"axis\" of a wheel is no list of 3 numbers".to_string())?;
+    let inertia = number("inertia")?.ok_or_else(|| needed("inertia"))?;
+    let told = match &object["speed"] {
+        Value::String(text) => Speed::Text(text.clone()),
+        _ => Speed::Number(number("speed")?.ok_or_else(|| needed("speed"))?),
+    };
+    let speed = told.in_unit(object["speed_unit"].as_str())?;
+    let free = match &object["free"] {
+        Value::Null => false,
+        Value::Bool(free) => *free,
+        _ => return Err("\"free\" of a wheel is neither true nor false".into()),
+    };
+    let [torque, from, until] = [number("torque")?, number("from")?, number("until")?];
+    driven(axis, inertia, speed, Told { free, torque, from, until })
 }
 
 /// What is told of how a wheel is driven.
@@ -253,19 +201,30 @@ mod tests {
 
     #[test]
     fn a_text_names_axis_inertia_speed_and_drive() {
-        let wheel = GivenWheel::parse("0,0,2,0.01@3000rpm").unwrap();
+        let wheel = parse("0,0,2,0.01@3000rpm").unwrap();
         assert!(wheel.is_held());
-        assert!((wheel.held().speed(0.0, Default::default()) - 100.0 * core::f64::consts::PI).abs() < 1e-12);
-        assert_eq!(wheel.held().axis().z, 1.0);
-        let free = GivenWheel::parse("1,0,0,0.5@-2e1,free").unwrap().of_start([3.0, 0.0, 0.0]).unwrap();
+        assert!(
+            (wheel.at_speed().speed(0.0, Default::default()) - 100.0 * core::f64::consts::PI).abs() < 1e-12
+        );
+        assert_eq!(wheel.at_speed().axis().z, 1.0);
+        for text in [
+            "1,0,0,0.5@-20",
+            "0,1,0,0.5@3,free",
+            "0,0,1,0.5@3,torque=-2,from=1",
+            "0,0,1,0.5@3,torque=2,from=1,until=3",
+        ] {
+            let wheel = parse(text).unwrap();
+            assert_eq!(parse(&wheel.to_string()), Ok(wheel), "{text}");
+        }
+        let free = parse("1,0,0,0.5@-2e1,free").unwrap().of_start(0.0, [3.0, 0.0, 0.0].into());
         assert_eq!(free.speed(5.0, [3.0, 1.0, 1.0].into()), -20.0);
-        let driven = GivenWheel::parse("1,0,0,0.5@2, torque=0.25, from=1, until=3").unwrap();
-        assert_eq!(driven.of_start([0.0; 3]).unwrap().speed(9.0, Default::default()), 3.0);
+        let driven = parse("1,0,0,0.5@2, torque=0.25, from=1, until=3").unwrap();
+        assert_eq!(driven.of_start(0.0, Default::default()).speed(9.0, Default::default()), 3.0);
     }
 
     #[test]
     fn what_is_wrong_is_said() {
-        let error = |text: &str| GivenWheel::parse(text).unwrap_err();
+        let error = |text: &str| parse(text).unwrap_err();
         assert!(error("1,0,0,0.1").starts_with("no '@' and speed"));
         assert!(error("1,0,0@3").starts_with("3 numbers before '@', 4 needed"));
         assert_eq!(
@@ -280,7 +239,7 @@ mod tests {
             error("1,0,0,0.1@3,torque=1,until=-1")
                 .starts_with("the motor of the wheel works from 0 s to -1 s")
         );
-        let json = |text: &str| GivenWheel::of_json(&serde_json::from_str(text).unwrap()).unwrap_err();
+        let json = |text: &str| of_json(&serde_json::from_str(text).unwrap()).unwrap_err();
         assert!(json(r#"{"axis":[1,0,0],"inertia":0.1,"speed":3}"#).starts_with("3.0 has no unit"));
         assert!(json(r#"{"axis":[1,0],"inertia":0.1,"speed":"3rpm"}"#).starts_with("\"axis\" of a wheel"));
         let more = |keys: &str| json(&format!(r#"{{"axis":[1,0,0],"inertia":0.1,"speed":"3rpm",{keys}}}"#));

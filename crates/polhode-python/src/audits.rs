@@ -25,7 +25,7 @@ use crate::units::named_rate;
 ///
 /// `verdict` (`right`, `wrong` or `undecided`), `suspect`, `reading` (the convention, a dict), `ties`, `ranking`, `rows`,
 /// `energy_error`, `momentum_error`, `momentum_vector_error` (relative), `attitude_error` (rad), `flips`, `flips_exact`,
-/// `conservation`, `motion`, `integrator`, `other_body`, `other_torque`, `advice`, `resolution`, `body`, `warnings`.
+/// `conservation`, `motion`, `integrator`, `other_body`, `other_torque`, `other_wheel`, `advice`, `resolution`, `body`, `warnings`.
 #[pyclass(frozen, module = "polhode", name = "Verdict")]
 pub(crate) struct Verdict {
     name: String,

@@ -1,12 +1,11 @@
 //! Bodies: inertia, what acts on it, and a start.
 
-use polhode::body::{Point, State};
+use polhode::body::{Point, State, WheelAtStart};
 use polhode::inertia::Inertia;
 use polhode::num::Dd;
 use polhode::rotation::{Quat, Vec3};
 use polhode::{body, catalogue};
 use polhode_files::bodies;
-use polhode_files::wheel::GivenWheel;
 use polhode_pages::table::to_digits;
 use pyo3::prelude::*;
 use pyo3::types::PyString;
@@ -212,7 +211,7 @@ impl Body {
     }
 }
 
-/// The body that a text names: one of the catalogue, with its start, or one of a file as `FILE` or `FILE:LINK`.
+/// The body that a text names: one of the catalogue, with its start and the wheels that it carries then, or one of a file as `FILE` or `FILE:LINK`.
 ///
 /// >>> import polhode
 /// >>> polhode.body("toutatis")
@@ -232,14 +231,14 @@ fn by_name(py: Python<'_>, text: &str) -> PyResult<Body> {
         return Ok(Body { body, named: Some(Box::new(named)), raised: Vec::new() });
     }
     if let Some((inertia, wheels)) = heard(py, || bodies::inertia("body", text))? {
-        if !wheels.iter().all(GivenWheel::is_held) {
+        if !wheels.iter().all(WheelAtStart::is_held) {
             return Err(refused(format!(
                 "body: '{text}': the momentum of a wheel that is free or driven depends on the start; give it as Wheel(...).free(omega)"
             )));
         }
         let Body { mut body, named, raised } = Body::from(inertia);
         for wheel in &wheels {
-            body = body.with_wheel(wheel.held()).map_err(of("body"))?;
+            body = body.with_wheel(wheel.at_speed()).map_err(of("body"))?;
         }
         return Ok(Body { body, named, raised });
     }

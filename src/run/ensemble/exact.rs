@@ -52,7 +52,7 @@ struct Followed {
 
 impl Followed {
     fn new(ensemble: &Ensemble, k: usize, number: usize, times: &[f64]) -> Result<Self, MemberError> {
-        let (body, start) = ensemble.member(k)?;
+        let (body, start) = ensemble.member(k, 0.0)?;
         let motion = ExactMotion::from_point(&body, start).map_err(|error| match error {
             NoClosedForm::State(error) => MemberError::from(error),
             error => error.into(),

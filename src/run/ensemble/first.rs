@@ -40,7 +40,7 @@ impl Ensemble {
         end: f64,
         spacing: f64,
     ) -> Vec<First> {
-        self.each_by_itself(|body, start| {
+        self.each_by_itself(0.0, |body, start| {
             let motion = ExactMotion::from_point(body, start).map_err(|error| match error {
                 NoClosedForm::State(error) => MemberError::from(error),
                 error => error.into(),
@@ -60,17 +60,17 @@ impl Ensemble {
         end: f64,
         spacing: f64,
     ) -> Vec<First> {
-        self.each_by_itself(|body, start| {
+        self.each_by_itself(clock.start, |body, start| {
             let mut run = Run::from_point(method, body, start.to_f64(), clock)?.watching(Watch::Never);
             let found = run.events(&[event(body)?.stopping()], end, spacing)?.found;
             Ok(found.into_iter().next())
         })
     }
 
-    fn each_by_itself(&self, one: impl Fn(&Body, Point<Dd>) -> First + Sync) -> Vec<First> {
+    fn each_by_itself(&self, t: f64, one: impl Fn(&Body, Point<Dd>) -> First + Sync) -> Vec<First> {
         let mut all = Vec::with_capacity(self.len());
         let part = |part: core::ops::Range<usize>| -> Vec<First> {
-            part.map(|k| self.member(k).and_then(|(body, start)| one(&body, start))).collect()
+            part.map(|k| self.member(k, t).and_then(|(body, start)| one(&body, start))).collect()
         };
         let Ok(()) = self.in_parts(parts::of_single(self.len()), part, |part| {
             all.extend(part);

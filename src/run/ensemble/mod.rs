@@ -22,7 +22,7 @@ use self::members::{Inertias, Start};
 pub use self::rows::Rows;
 pub use self::spread::{Spread, Tally};
 use self::stepped::Course;
-use crate::body::{Body, Clock, Point, State};
+use crate::body::{Body, Clock, Point, State, WheelAtStart};
 use crate::inertia::Inertia;
 use crate::method::AnyMethod;
 use crate::num::{Dd, Instructions};
@@ -87,6 +87,7 @@ pub struct Ensemble {
     /// Members that were given up before the start, ascending.
     failed: Vec<(usize, MemberError)>,
     acting: Option<Acting>,
+    wheels: Vec<WheelAtStart>,
     observed: Observed,
     instructions: Instructions,
     #[cfg(feature = "parallel")]
@@ -112,6 +113,7 @@ impl Ensemble {
             starts: Vec::with_capacity(members),
             failed: Vec::new(),
             acting: None,
+            wheels: Vec::new(),
             observed: Observed::default(),
             instructions: Instructions::default(),
             #[cfg(feature = "parallel")]
@@ -159,6 +161,25 @@ impl Ensemble {
     ) -> Self {
         self.acting = Some(Arc::new(move |inertia| body(inertia).map_err(Into::into)));
         self
+    }
+
+    /// The same members, each of them with `wheels` besides, whose momenta follow from its own start.
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use polhode::body::{Wheel, WheelAtStart};
+    /// use polhode::Inertia;
+    /// use polhode::run::Ensemble;
+    /// let wheel = WheelAtStart::free(Wheel::new(Vector3::z(), 0.5, 4.0)?);
+    /// let mut ensemble = Ensemble::new().carrying(vec![wheel]);
+    /// ensemble.push_omega(&Inertia::from_moments([3.0, 3.0, 5.0])?, Default::default(), Vector3::z());
+    /// // relative to the body, which turns itself
+    /// let body = ensemble.body(0).ok_or("a member")?;
+    /// assert_eq!(body.momentum_of_wheels_at(0.0), Vector3::new(0.0, 0.0, 2.5));
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    pub fn carrying(self, wheels: Vec<WheelAtStart>) -> Self {
+        Ensemble { wheels, ..self }
     }
 
     /// The same members, with errors in every row.
@@ -257,7 +278,7 @@ impl Ensemble {
             return Err(EnsembleError::Descending { before: pair[0], after: pair[1] }.into());
         }
         // what is wrong with the method is wrong for all
-        if let Some(body) = (0..self.len()).find_map(|k| self.body(k).ok()) {
+        if let Some((body, _)) = (0..self.len()).find_map(|k| self.member(k, clock.start).ok()) {
             method.prepare_f64(clock, &body).map_err(EnsembleError::from)?;
         }
         let course = Course { ensemble: self, method, clock, steps };
@@ -268,28 +289,30 @@ impl Ensemble {
         )
     }
 
-    /// The inertia of member `k`; `None` where there is no such member, or none that has one.
+    /// The body of member `k` with all that acts on it, from a start at time 0; `None` where there is no such member, or none that has one.
     #[must_use]
-    pub fn inertia(&self, k: usize) -> Option<Inertia> {
-        self.body(k).ok().map(|body| body.inertia().clone())
+    pub fn body(&self, k: usize) -> Option<Body> {
+        self.member(k, 0.0).ok().map(|(body, _)| body)
     }
 
-    /// The body of member `k`.
-    fn body(&self, k: usize) -> Result<Body, MemberError> {
+    /// Body and start of member `k`, in the solver frame, where it starts at the time `t`, s.
+    fn member(&self, k: usize, t: f64) -> Result<(Body, Point<Dd>), MemberError> {
         if let Ok(place) = self.failed.binary_search_by_key(&k, |failed| failed.0) {
             return Err(self.failed[place].1.clone());
         }
         let inertia = self.inertias.of(k)?;
-        Ok(match &self.acting {
+        let mut body = match &self.acting {
             Some(acting) => acting(inertia)?,
             None => Body::free(inertia),
-        })
-    }
-
-    /// Body and start of member `k`, in the solver frame.
-    fn member(&self, k: usize) -> Result<(Body, Point<Dd>), MemberError> {
-        let body = self.body(k)?;
-        let start = self.starts[k].enter(&body)?;
+        };
+        let start = self.starts.get(k).copied().unwrap_or(Start::NOWHERE);
+        if !self.wheels.is_empty() {
+            // the inertia of the carrier, and so how it turns, is the same with any momenta of its wheels
+            let carrying = body.clone().with_wheels_at_start(&self.wheels, t, Vector3::zeros())?;
+            let omega = carrying.omega_of(&start.enter(&carrying)?);
+            body = body.with_wheels_at_start(&self.wheels, t, omega)?;
+        }
+        let start = start.enter(&body)?;
         Ok((body, start))
     }
 }

@@ -68,7 +68,7 @@ impl Course<'_> {
     }
 
     fn enter(&self, number: usize, k: usize) -> Result<Entered, MemberError> {
-        let (body, start) = self.ensemble.member(k)?;
+        let (body, start) = self.ensemble.member(k, self.clock.start)?;
         let mut step = self.method.prepare_f64(self.clock, &body).map_err(RunError::from)?;
         let mut point = start.to_f64();
         step.open(&mut point);
@@ -102,7 +102,7 @@ impl Course<'_> {
                     continue;
                 }
                 // alone it runs into the same and says why
-                let again = self.ensemble.member(rows.first() + member.number);
+                let again = self.ensemble.member(rows.first() + member.number, self.clock.start);
                 let outcome = match again {
                     Ok((body, start)) => self.alone(member.number, &body, start, rows),
                     Err(error) => Err((time, error)),

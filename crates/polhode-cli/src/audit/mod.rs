@@ -44,10 +44,10 @@ const EXAMPLES: &str = "Examples:
 /// angular momentum in columns of any common names, the qpos and qvel of MuJoCo, and LAMMPS dumps; several bodies by a column
 /// id. Every convention that the columns allow is tried; the one in which the rows obey the equations of motion is kept. Without
 /// a body its moments are fitted up to a factor. right: every row and every column is within --tolerance of a motion of the
-/// body, within what its own digits tell, or within the noise that --noise declares. A record that agrees within a noise that
+/// body, within what its own digits tell, or within the noise that --noise declares. A wheel has its speed at the first row. A record that agrees within a noise that
 /// nobody declares is undecided. Where a name or an option states a direction, a frame, a unit or the order of the moments, and the
 /// rows contradict it, the record is wrong. suspect: kinematics-sign, omega-frame, transposed, moments-order, degrees, gyroscopic-term-missing,
-/// gyroscopic-sign, integrator:NAME, discontinuity, other-body, other-torque or none. Of a record that is wrong by its
+/// gyroscopic-sign, integrator:NAME, discontinuity, other-body, other-torque, other-wheel or none. Of a record that is wrong by its
 /// integrator, a method and a step that would do are named, if they are found within two seconds. Exit code 0: right; 1: wrong or undecided.
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
@@ -142,12 +142,14 @@ impl Audit {
     /// The verdict on every body of the file.
     fn outcomes(&self, path: &Path, name: &str) -> Result<Vec<Outcome>, Error> {
         let golden = self.against.as_deref().map(Golden::read).transpose()?;
+        let mut wheels = Vec::new();
         let body = match (&golden, &self.body) {
             (Some(golden), _) => Some(self.forces.act_on(golden.body.clone(), None)?),
             (None, Some(body)) => {
                 let own = body.own_orbit().map(|(orbit, _)| orbit);
-                let (body, wheels) = body.heavy(self.forces.weight_moment)?;
-                Some(self.wheels.held(self.forces.act_on(body, own)?, wheels)?)
+                let (body, of_file) = body.heavy(self.forces.weight_moment)?;
+                wheels = self.wheels.all(of_file);
+                Some(self.forces.act_on(body, own)?)
             }
             (None, None) => None,
         };
@@ -202,6 +204,7 @@ impl Audit {
             let mut question = Question::new(body.clone());
             (question.tolerance, question.claims) = (self.tolerance, claims);
             question.noise = self.noise.unwrap_or_default();
+            question.wheels.clone_from(&wheels);
             let verdict =
                 audit(&record, &question).map_err(|error| Error::Input(format!("{place}: {error}")))?;
             let against =

@@ -98,8 +98,8 @@ pub(crate) struct Compare {
 
 impl Compare {
     pub(crate) fn run(&self) -> Result<(), Error> {
-        let body = self.motion.body()?;
-        let start = self.motion.start(&body)?;
+        let body = self.motion.body(self.start_time)?;
+        let start = self.motion.start(&body, self.start_time)?;
         let span = self.span()?;
         let entries = self.entries(span)?;
         let speed = body.omega_of(&start).norm();

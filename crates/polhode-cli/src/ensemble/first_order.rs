@@ -14,8 +14,9 @@ const TRUSTED: f64 = 0.1;
 pub(super) fn beside(spec: &Spec, reduced: &[Option<Reduced>], rows: &[usize]) -> Option<String> {
     let Motion::Exact { elapsed } = &spec.plan.motion else { return None };
     let (motion, start) = StartCovariance::of(spec.population()?)?;
-    let body = spec.acting().on(motion.body().inertia().clone()).ok()?;
-    if body.problem() != Problem::Free {
+    let acting = spec.acting();
+    let body = acting.on(motion.body().inertia().clone()).ok()?;
+    if body.problem() != Problem::Free || !acting.wheels().is_empty() {
         return None;
     }
     let mut table = Table::new(

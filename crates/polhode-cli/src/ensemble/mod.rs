@@ -52,7 +52,8 @@ const AFTER_HELP: &str = "SPEC.toml:
   [run]     members, seed, method, step, tolerance, start_time, times,
             times_file and times_column, or until and every;
             errors = false leaves energy and L unwatched
-  [[body.wheels]]  axis, inertia, speed = \"3000rpm\": held at its speed
+  [[body.wheels]]  axis, inertia, speed = \"3000rpm\" at the start, held;
+            free = true, or torque, from, until of a motor
   [force]   weight_moment, gravity_gradient or orbit, orbit_plane or
             orbit_table, gm; torque_body, torque_space, drag
   [event]   first = \"flip\", or another event of propagate --event, up to the

@@ -51,16 +51,14 @@ pub(super) fn passages(spec: &Spec, watched: &Watched, ensemble: &Ensemble, befo
             (0.0, ensemble.first_by(method.as_ref(), *clock, event, last, watched.spacing))
         }
     };
-    let acting = spec.acting();
     let of = |(k, found): (usize, Result<_, _>)| {
         let (outcome, numbers) = match found {
             Ok(None) => (NEVER.into(), None),
             Err(error) => (format!("{error}").into(), None),
             Ok(Some(one)) => {
                 let one: polhode::events::Occurrence = one;
-                let body = ensemble.inertia(k).and_then(|inertia| acting.on(inertia).ok());
                 let [w, x, y, z] = one.state.attitude.components();
-                let numbers = body.map(|body| {
+                let numbers = ensemble.body(k).map(|body| {
                     let omega = body.omega_body(&one.state);
                     [(Dd::from(origin) + one.time).hi(), w, x, y, z, omega.x, omega.y, omega.z]
                 });

@@ -151,6 +151,7 @@ pub(super) fn propagate(
 fn members(spec: &Spec, range: Range<u64>, means: Means, shares: &mut Shares) -> Result<Ensemble, Error> {
     let acting = spec.acting();
     let mut ensemble = Ensemble::with_capacity((range.end - range.start) as usize)
+        .carrying(acting.wheels().to_vec())
         .acted_on(move |inertia| acting.on(inertia))
         .observing(Observed::default().with_invariants(spec.plan.errors))
         .by(means.instructions)

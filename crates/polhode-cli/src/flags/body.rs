@@ -2,14 +2,13 @@
 
 use clap::Args;
 use nalgebra::Matrix3;
-use polhode::body::{Body, Orbit};
+use polhode::body::{Body, Orbit, WheelAtStart};
 use polhode::catalogue::{self, Orientation};
 use polhode::inertia::Inertia;
 use polhode_files::bodies;
 use polhode_files::error::{Error, tell};
 use polhode_files::numbers::{list, numbers};
 use polhode_files::text::visible;
-use polhode_files::wheel::GivenWheel;
 
 /// A body: exactly one of three flags.
 #[derive(Args, Clone, Debug)]
@@ -44,7 +43,7 @@ pub(crate) struct Described {
     pub(crate) inertia: Inertia,
     /// N m, body axes; zero of a body without a fixed point.
     pub(crate) weight_moment: [f64; 3],
-    pub(crate) wheels: Vec<GivenWheel>,
+    pub(crate) wheels: Vec<WheelAtStart>,
     /// Whose gravity gradient turns it.
     pub(crate) orbit: Option<Orbit>,
 }
@@ -66,6 +65,7 @@ pub(crate) fn named(flag: &str, text: &str) -> Result<Described, Error> {
         return Ok(Described {
             weight_moment: found.weight_moment,
             orbit: found.orbit.map(|named| named.orbit),
+            wheels: found.wheels,
             ..Described::alone(found.inertia)
         });
     }
@@ -82,9 +82,9 @@ pub(crate) fn named(flag: &str, text: &str) -> Result<Described, Error> {
 }
 
 impl BodyArguments {
-    /// The body that the flags describe, with the catalogue's weight moment or `weight_moment` in its place, and the wheels that its
-    /// file names.
-    pub(crate) fn heavy(&self, weight_moment: Option<[f64; 3]>) -> Result<(Body, Vec<GivenWheel>), Error> {
+    /// The body that the flags describe, with the catalogue's weight moment or `weight_moment` in its place, and its wheels in the catalogue
+    /// or its file.
+    pub(crate) fn heavy(&self, weight_moment: Option<[f64; 3]>) -> Result<(Body, Vec<WheelAtStart>), Error> {
         let Described { inertia, weight_moment: own, wheels, .. } = self.described()?;
         let moment = weight_moment.unwrap_or(own);
         if moment == [0.0; 3] {
@@ -95,7 +95,7 @@ impl BodyArguments {
     }
 
     /// The same for what only free bodies do.
-    pub(crate) fn free(&self) -> Result<(Body, Vec<GivenWheel>), Error> {
+    pub(crate) fn free(&self) -> Result<(Body, Vec<WheelAtStart>), Error> {
         let Described { inertia, weight_moment, wheels, .. } = self.described()?;
         if weight_moment != [0.0; 3] {
             let name = self.body.as_deref().unwrap_or_default();

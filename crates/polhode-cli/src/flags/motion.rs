@@ -32,8 +32,8 @@ pub(crate) struct MotionArguments {
 }
 
 impl MotionArguments {
-    /// The body with all that acts on it.
-    pub(crate) fn body(&self) -> Result<Body, Error> {
+    /// The body with all that acts on it, of a motion that starts at the time `t`, s.
+    pub(crate) fn body(&self, t: f64) -> Result<Body, Error> {
         if let (Some(file), true) = (self.body.mesh(), self.forces.is_any()) {
             let rule = "a mesh file tells no mass, and a force acts on one";
             let remedy = "write a TOML file with the mesh as a [[part]] with its mass";
@@ -42,12 +42,12 @@ impl MotionArguments {
         let own = self.body.own_orbit().map(|(orbit, _)| orbit);
         let (body, of_file) = self.body.heavy(self.forces.weight_moment)?;
         let body = self.forces.act_on(body, own)?;
-        self.wheels.carried(body, of_file, |held| self.start(held))
+        self.wheels.carried(body, of_file, t, |held| self.start(held, t))
     }
 
-    /// The exact start of that `body` in the solver frame.
-    pub(crate) fn start(&self, body: &Body) -> Result<Point<Dd>, Error> {
-        self.start.inside(body, self.body.published_start())
+    /// The exact start of that `body` at the time `t`, s, in the solver frame.
+    pub(crate) fn start(&self, body: &Body, t: f64) -> Result<Point<Dd>, Error> {
+        self.start.inside(body, t, self.body.published_start())
     }
 
     /// Says what the attitude at the start refers to where it is that of the catalogue.

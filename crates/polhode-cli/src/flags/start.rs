@@ -164,9 +164,14 @@ impl StartArguments {
         }
     }
 
-    /// The exact start of `body` in the solver frame; attitude and spin that are not given are those that are `published` with the
+    /// The exact start of `body` at the time `t`, s, in the solver frame; attitude and spin that are not given are those that are `published` with the
     /// body, if they are.
-    pub(crate) fn inside(&self, body: &Body, published: Option<PublishedStart>) -> Result<Point<Dd>, Error> {
+    pub(crate) fn inside(
+        &self,
+        body: &Body,
+        t: f64,
+        published: Option<PublishedStart>,
+    ) -> Result<Point<Dd>, Error> {
         if let (Some(given), Some(known)) =
             (self.frame, published.as_ref().and_then(|start| start.orientation))
             && !self.has_attitude()
@@ -175,7 +180,7 @@ impl StartArguments {
             let rule = format!("the start of the catalogue is in the frame {}", known.frame);
             return Err(Error::input("--frame", given.name(), &rule, "give --to-frame to turn it"));
         }
-        let mut point = self.as_given(body, &published)?;
+        let mut point = self.as_given(body, t, &published)?;
         let Some(to) = self.to_frame else { return Ok(point) };
         let Some(from) = self.frame_of_start(published.as_ref()) else {
             return Err(Error::input(
@@ -200,7 +205,7 @@ impl StartArguments {
         self.to_frame.or_else(|| self.frame_of_start(published))
     }
 
-    fn as_given(&self, body: &Body, published: &Option<PublishedStart>) -> Result<Point<Dd>, Error> {
+    fn as_given(&self, body: &Body, t: f64, published: &Option<PublishedStart>) -> Result<Point<Dd>, Error> {
         let angle_unit = self.angle_unit();
         if let Some(elements) = self.tumbling.elements(angle_unit)? {
             if !body.wheels().is_empty() {
@@ -214,7 +219,7 @@ impl StartArguments {
             (None, Some(published)) => Quat::from_components(published.attitude),
             (None, None) => Quat::from_components([1.0, 0.0, 0.0, 0.0]),
         };
-        let of_wheels = body.momentum_of_wheels_at(0.0);
+        let of_wheels = body.momentum_of_wheels_at(t);
         let from_momentum = |flag: &str, momentum_body: Vec3<f64>| {
             let momentum_body = momentum_body - of_wheels.into();
             let start = body.enter(&State { attitude, momentum_body });

@@ -92,8 +92,8 @@ impl Flips {
 
 impl Looks {
     pub(crate) fn of(course: &Course) -> Result<Self, Error> {
-        let body = course.motion.body()?;
-        let start = course.motion.start(&body)?;
+        let body = course.motion.body(course.start_time)?;
+        let start = course.motion.start(&body, course.start_time)?;
         let exact = ExactMotion::from_point(&body, start);
         let mut looks = Looks {
             body,

@@ -16,8 +16,8 @@ impl Propagate {
     /// Writes a row of each event, by time.
     pub(super) fn look_for_events(&self, body: &Body) -> Result<(), Error> {
         let columns = Columns::of_states(&self.fields, self.asked()?, body)?;
-        let start = self.motion.start(body)?;
         let [from, to] = self.times.span()?;
+        let start = self.motion.start(body, from)?;
         if !(to > from && (to - from).is_finite()) {
             let rule = format!("does not come after the start, {from:?} s");
             return Err(Error::input("--until", &format!("{to:?}"), &rule, "give a later time"));

@@ -99,7 +99,8 @@ pub(crate) struct Propagate {
 
 impl Propagate {
     pub(crate) fn run(&self) -> Result<(), Error> {
-        let body = self.motion.body()?;
+        let t = self.times.start()?;
+        let body = self.motion.body(t)?;
         if let Some(file) = &self.through {
             return self.through(&body, file);
         }
@@ -107,7 +108,7 @@ impl Propagate {
             return self.look_for_events(&body);
         }
         let columns = Columns::chosen(&self.fields, self.asked()?, &body)?;
-        let start = self.motion.start(&body)?;
+        let start = self.motion.start(&body, t)?;
         let times = self.times.output()?;
         self.compare_epoch();
         if self.method == "exact" {

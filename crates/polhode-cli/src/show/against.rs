@@ -231,7 +231,7 @@ impl Show {
         found: &mut Track,
     ) -> Result<(), Error> {
         let body = &looks.body;
-        let start = self.motion.start(body)?;
+        let start = self.motion.start(body, course.start_time)?;
         let monitor = Monitor::new(body, Clock { start: course.start_time, step: 1.0 }, &start.to_f64());
         let mut momenta = Vec::new();
         for (row, attitude) in read.rows.iter().zip(&found.attitudes) {

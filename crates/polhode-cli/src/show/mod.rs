@@ -104,8 +104,8 @@ impl Show {
             return Err(Error::input("--against", "", &rule, "leave some out"));
         }
         let file = Output::to_file("--out", &self.out)?;
-        let body = self.motion.body()?;
-        let start = self.motion.start(&body)?;
+        let body = self.motion.body(self.start_time)?;
+        let start = self.motion.start(&body, self.start_time)?;
         let against: Vec<Against> =
             self.against.iter().map(|text| Against::of(text)).collect::<Result<_, _>>()?;
         let until = match self.until {

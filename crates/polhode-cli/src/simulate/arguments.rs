@@ -2,6 +2,7 @@
 
 use clap::Args;
 use nalgebra::Vector3;
+use polhode::body::Wheel;
 use polhode_files::numbers::{not_negative, number, numbers};
 use polhode_fit::{Disturbances, Gyroscope};
 
@@ -37,14 +38,15 @@ fn vector(given: Option<[f64; 3]>) -> Vector3<f64> {
 }
 
 impl DisturbanceArguments {
-    /// With wheels of the momentum `of_wheels` besides, N m s.
-    pub(super) fn disturbances(&self, of_wheels: Vector3<f64>) -> Disturbances {
+    /// With `wheels` besides.
+    pub(super) fn disturbances(&self, wheels: &[Wheel]) -> Disturbances {
         Disturbances::default()
             .with_relative_drag(self.relative_drag)
             .with_drag(vector(self.drag))
             .with_torque(vector(self.torque) + vector(self.known_torque))
             .with_torque_noise(self.torque_noise)
-            .with_wheel(vector(self.wheel_momentum) + of_wheels)
+            .with_wheel(vector(self.wheel_momentum))
+            .with_wheels(wheels.to_vec())
             .with_wheel_rate(vector(self.wheel_rate))
     }
 

@@ -7,7 +7,6 @@ use std::path::PathBuf;
 
 use clap::Args;
 use nalgebra::Vector3;
-use polhode::body::Body;
 use polhode::num::Random;
 use polhode_files::error::Error;
 use polhode_files::numbers::{not_negative, number, numbers, positive};
@@ -16,7 +15,7 @@ use polhode_pages::table::{Cell, Column, Format, RowWriter, Table};
 
 use crate::flags::body::BodyArguments;
 use crate::flags::times::{Regular, regular};
-use crate::flags::wheel::WheelArguments;
+use crate::flags::wheel::{WheelArguments, refused};
 use arguments::{DisturbanceArguments, GyroscopeArguments};
 
 const USAGE: &str = "polhode simulate <BODY> [--omega <wx,wy,wz>] --until <T> --every <DT>
@@ -92,14 +91,14 @@ fn jitter(text: &str) -> Result<f64, String> {
 
 impl Simulate {
     pub(crate) fn run(&self) -> Result<(), Error> {
-        let body = self.carrier()?;
+        let (body, of_file) = self.body.free()?;
+        let wheels = self.wheels.all(of_file);
         let published = self.body.published_start().map(|start| start.omega);
         let Some(start) = self.omega.or(published) else {
             return Err(Error::Input(
                 "--omega: missing; give --omega wx,wy,wz; bodies of the catalogue have one".into(),
             ));
         };
-        let disturbances = self.disturbances.disturbances(body.momentum_of_wheels_at(0.0));
         let gyroscope = self.gyroscope.gyroscope();
         let mut random = Random::new(self.seed);
         let grid: Vec<f64> =
@@ -109,7 +108,7 @@ impl Simulate {
             let rule = format!("{} samples each, and at most {MOST_SAMPLES} are written", grid.len());
             return Err(Error::input("--tosses", &tosses.to_string(), &rule, "give fewer, or a larger DT"));
         }
-        let tells_wheels = self.disturbances.has_wheel() || !body.wheels().is_empty();
+        let tells_wheels = self.disturbances.has_wheel() || !wheels.is_empty();
         let mut rows =
             RowWriter::new(self.table(tells_wheels), self.format, self.out.as_deref(), tosses * grid.len())?;
         let pause = self.pause.unwrap_or(20.0 * self.every);
@@ -128,8 +127,12 @@ impl Simulate {
                 omega += random.normal_vector() * self.scatter;
             }
             let noise = self.gyroscope.attitude_noise();
-            let SimulatedPoses { rates, attitudes, .. } = simulate_poses(
-                body.inertia(),
+            // each toss starts with the speeds of the wheels
+            let carrier = body.clone().with_wheels_at_start(&wheels, 0.0, omega);
+            let carrier = carrier.map_err(|error| refused(&error))?;
+            let disturbances = self.disturbances.disturbances(carrier.wheels());
+            let SimulatedPoses { rates, attitudes, wheel, .. } = simulate_poses(
+                carrier.inertia(),
                 omega,
                 &sampled,
                 &disturbances,
@@ -139,7 +142,11 @@ impl Simulate {
             )
             .map_err(|error| Error::Input(error.to_string()))?;
             let thrown = toss as f64 * (self.until + pause);
-            for ((t, w), q) in written.iter().zip(&rates).zip(&attitudes) {
+            // momenta are told for the time of the row, but for what the turning of the body makes of them when it is read
+            let told = written.iter().zip(&sampled).zip(&wheel).map(|((written, sampled), wheel)| {
+                disturbances.wheel_at(*written) + (wheel - disturbances.wheel_at(*sampled))
+            });
+            for (((t, w), q), h) in written.iter().zip(&rates).zip(&attitudes).zip(told) {
                 let mut cells = vec![thrown + t];
                 if noise.is_some() {
                     cells.extend([q.w, q.i, q.j, q.k]);
@@ -148,22 +155,13 @@ impl Simulate {
                     cells.extend(w.iter());
                 }
                 if tells_wheels {
-                    cells.extend(disturbances.wheel_at(*t).iter());
+                    cells.extend(h.iter());
                 }
                 cells.extend(self.disturbances.known_torque().into_iter().flatten());
                 rows.push(cells.into_iter().map(Cell::from))?;
             }
         }
         rows.finish()
-    }
-
-    /// The body with its wheels.
-    fn carrier(&self) -> Result<Body, Error> {
-        let (body, wheels) = self.body.free()?;
-        self.wheels.carried(body, wheels, |_| {
-            let rule = "a record tells momenta of wheels that do not depend on how the body turns";
-            Err(Error::input("--wheel", "", rule, "give wheels whose speed is held"))
-        })
     }
 
     fn table(&self, tells_wheels: bool) -> Table {
@@ -185,7 +183,7 @@ impl Simulate {
             columns.extend(axes(["wx", "wy", "wz"], "rad/s", about));
         }
         if tells_wheels {
-            let meaning = "momentum of the wheel along this body axis";
+            let meaning = "momentum of the wheels relative to the body along this axis";
             columns.extend(axes(["hx (N m s)", "hy (N m s)", "hz (N m s)"], "N m s", [meaning; 3]));
         }
         if self.disturbances.known_torque().is_some() {

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::Named;
 use crate::error::{Error, warn};
 use crate::read;
-use crate::wheel::GivenWheel;
+use crate::wheel;
 
 /// The bodies of a joint fit of carrier and object.
 const JOINT: [&str; 3] = ["carrier", "object", "object_itself"];
@@ -47,7 +47,7 @@ pub(super) fn tensors(flag: &str, path: &Path) -> Result<Vec<Named>, Error> {
         };
         let wheels = match &object["wheels"] {
             Value::Null => Ok(Vec::new()),
-            Value::Array(wheels) => wheels.iter().map(GivenWheel::of_json).collect(),
+            Value::Array(wheels) => wheels.iter().map(wheel::of_json).collect(),
             _ => Err("\"wheels\" is no list".into()),
         };
         let wheels = wheels.map_err(|error| refused(&error))?;

@@ -7,6 +7,7 @@ mod parts;
 use std::path::Path;
 
 use nalgebra::Matrix3;
+use polhode::body::WheelAtStart;
 use polhode::inertia::Inertia;
 
 use crate::error::Error;
@@ -15,19 +16,18 @@ pub use crate::look::{Look, Piece};
 use crate::read;
 use crate::robots::{self, Language};
 use crate::text::visible;
-use crate::wheel::GivenWheel;
 pub use form::{Form, form};
 pub use parts::parts;
 
 /// Name and tensor of a body in the axes of its frame, about its centre of mass, kg m², and its wheels; the name may be empty.
-type Named = (String, Matrix3<f64>, Vec<GivenWheel>);
+type Named = (String, Matrix3<f64>, Vec<WheelAtStart>);
 
 /// The body that a text names.
 struct Chosen<'t> {
     path: &'t Path,
     name: String,
     tensor: Matrix3<f64>,
-    wheels: Vec<GivenWheel>,
+    wheels: Vec<WheelAtStart>,
 }
 
 /// The inertia of the body that `text` names, as FILE or FILE:LINK, and the wheels that the file gives it; `None` where there is no such
@@ -35,7 +35,7 @@ struct Chosen<'t> {
 ///
 /// # Errors
 /// A file that cannot be read, that has no such body or several to choose from, or whose tensor no body has.
-pub fn inertia(flag: &str, text: &str) -> Result<Option<(Inertia, Vec<GivenWheel>)>, Error> {
+pub fn inertia(flag: &str, text: &str) -> Result<Option<(Inertia, Vec<WheelAtStart>)>, Error> {
     let Some(Chosen { path, name, tensor, wheels }) = chosen(flag, text)? else { return Ok(None) };
     let of = if name.is_empty() { name } else { format!(" of '{}'", visible(&name)) };
     let inertia = Inertia::from_tensor(tensor);

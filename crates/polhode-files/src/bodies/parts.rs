@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use polhode::body::WheelAtStart;
 use polhode::inertia::{Amount, MassError, MassProperties, Solid};
 use toml::Spanned;
 use toml::de::DeValue;
@@ -12,7 +13,7 @@ use crate::look::{Look, Piece};
 use crate::mesh::{MeshOptions, length_unit, surface};
 use crate::numbers::turn;
 use crate::toml_file::{Section, TomlFile};
-use crate::wheel::GivenWheel;
+use crate::wheel;
 
 const KEYS: [&str; 10] =
     ["name", "shape", "size", "mass", "density", "at", "turn", "file", "length_unit", "inertia"];
@@ -24,7 +25,7 @@ pub(super) struct Parts {
     /// What they look like.
     pub(super) pieces: Vec<Piece>,
     /// The wheels, which parts include.
-    pub(super) wheels: Vec<GivenWheel>,
+    pub(super) wheels: Vec<WheelAtStart>,
 }
 
 /// The sum of the parts of a TOML file: its `[[part]]` tables.
@@ -56,7 +57,7 @@ pub(super) fn read(path: &Path) -> Result<Parts, Error> {
             }
             ("wheels", _) => {
                 let top = Section { file: &file, place: 0, keys: document.get_ref() };
-                wheels = GivenWheel::list_of_toml(&top)?;
+                wheels = wheel::list_of_toml(&top)?;
             }
             ("name", DeValue::String(_)) => {}
             (other, _) => {

@@ -117,6 +117,8 @@ pub struct SimulatedPoses {
     pub rates: Vec<Vector3<f64>>,
     /// Attitudes, body axes → space.
     pub attitudes: Vec<UnitQuaternion<f64>>,
+    /// Momentum of the wheels relative to the body, body axes, N m s, without noise: what [`Segment::with_wheel`](crate::Segment::with_wheel) takes.
+    pub wheel: Vec<Vector3<f64>>,
 }
 
 /// The same with what a sensor of attitudes reads at `times`: the attitudes, body axes → space and 1 at time 0, each turned by a rotation
@@ -149,7 +151,8 @@ pub fn simulate_poses(
     random: &mut Random,
 ) -> Result<SimulatedPoses, SimulationError> {
     check("the noise of the attitudes", &[attitude_noise], false)?;
-    let Read { rates, exact } = self::read(inertia, omega_body, times, disturbances, gyroscope, random)?;
+    let Read { rates, exact, wheel } =
+        self::read(inertia, omega_body, times, disturbances, gyroscope, random)?;
     let mut read = |q: &Quat<f64>| {
         if attitude_noise == 0.0 {
             return UnitQuaternion::from(*q);
@@ -157,13 +160,14 @@ pub fn simulate_poses(
         let off = Vec3::from(random.normal_vector() * attitude_noise);
         UnitQuaternion::from(*q * Quat::exponential(off))
     };
-    Ok(SimulatedPoses { rates, attitudes: exact.iter().map(&mut read).collect() })
+    Ok(SimulatedPoses { rates, attitudes: exact.iter().map(&mut read).collect(), wheel })
 }
 
 /// What the gyroscope reads, and the true attitudes.
 struct Read {
     rates: Vec<Vector3<f64>>,
     exact: Vec<Quat<f64>>,
+    wheel: Vec<Vector3<f64>>,
 }
 
 fn read(
@@ -179,7 +183,7 @@ fn read(
     let errors = gyroscope.errors(times, random);
     let found = disturbances.motion(inertia, omega_body, times, gyroscope.skew, random)?;
     let rates = found.rates.iter().zip(&errors).map(|(w, error)| gyroscope.reading(w, error));
-    Ok(Read { rates: rates.collect(), exact: found.attitudes })
+    Ok(Read { rates: rates.collect(), exact: found.attitudes, wheel: found.wheel })
 }
 
 /// `value` if it is finite and, where asked, not negative.

@@ -3,7 +3,7 @@
 use crate::setters::setters;
 use crate::thresholds::simulate::{IMPULSES, LAST_TERM, STEPS, TERMS, TERMS_OF_IMPULSES};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use polhode::body::StateError;
+use polhode::body::{StateError, Wheel};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
@@ -13,7 +13,7 @@ use crate::simulate::{SimulationError, check};
 
 /// What acts on a simulated body, in its own axes; the default is the free body.
 ///
-/// p' = p × ω − k J ω − D ω + τ + white noise, with p = J ω + h and the momentum h(t) of a wheel.
+/// p' = p × ω − k J ω − D ω + τ + white noise, with p = J ω + h and the momentum h(t) of wheels.
 #[non_exhaustive]
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Disturbances {
@@ -29,6 +29,8 @@ pub struct Disturbances {
     pub wheel: Vector3<f64>,
     /// Its change, N m.
     pub wheel_rate: Vector3<f64>,
+    /// Wheels besides; with those that are not held J is [`Body::inertia`](polhode::body::Body::inertia), which is without `J a aᵀ` of each.
+    pub wheels: Vec<Wheel>,
 }
 
 impl Disturbances {
@@ -41,6 +43,7 @@ impl Disturbances {
             torque_noise => with_torque_noise(f64),
             wheel => with_wheel(Vector3<f64>),
             wheel_rate => with_wheel_rate(Vector3<f64>),
+            wheels => with_wheels(Vec<Wheel>),
         }
     }
 
@@ -53,10 +56,34 @@ impl Disturbances {
         check("a change of the wheel's momentum", self.wheel_rate.as_slice(), true)
     }
 
-    /// Momentum of the wheel at time `t`, N m s.
+    /// Momentum h of the wheels at time `t`, N m s.
     #[must_use]
     pub fn wheel_at(&self, t: f64) -> Vector3<f64> {
-        self.wheel + self.wheel_rate * t
+        // of a wheel that is not held it is that relative to a body at rest
+        self.relative_at(t, Vector3::zeros())
+    }
+
+    /// Momentum of the wheels at time `t` relative to the body, which turns at `omega` then.
+    fn relative_at(&self, t: f64, omega: Vector3<f64>) -> Vector3<f64> {
+        let of_wheels =
+            self.wheels.iter().map(|wheel| wheel.axis() * (wheel.inertia() * wheel.speed(t, omega)));
+        of_wheels.fold(self.wheel + self.wheel_rate * t, |sum, one| sum + one)
+    }
+
+    /// Momentum h of the wheels just after time `t`, or just before it, and its change.
+    fn wheels_at(&self, t: f64, after: bool) -> [Vector3<f64>; 2] {
+        let change = self.wheels.iter().filter_map(|wheel| {
+            let (torque, [from, to]) = wheel.motor()?;
+            let works = if after { from <= t && t < to } else { from < t && t <= to };
+            works.then(|| wheel.axis() * torque)
+        });
+        [self.wheel_at(t), change.fold(self.wheel_rate, |sum, one| sum + one)]
+    }
+
+    /// When motors begin and end.
+    fn switchings(&self) -> impl Iterator<Item = f64> {
+        let motors = self.wheels.iter().filter_map(Wheel::motor);
+        motors.flat_map(|(_, times)| times).filter(|time| time.is_finite())
     }
 
     /// True rates at `times`, the component k at times + skew_k, and attitudes at `times`, 1 at time 0.
@@ -83,12 +110,16 @@ impl Disturbances {
         let mut found = True {
             rates: vec![Vector3::zeros(); times.len()],
             attitudes: vec![Quat::identity(); times.len()],
+            wheel: vec![Vector3::zeros(); times.len()],
         };
         let mut store = |read: &Read, (rate, attitude): (Vector3<f64>, Quat<f64>)| match read.of {
             Of::Axis(k) => found.rates[read.sample][k] = rate[k],
-            Of::Attitude => found.attitudes[read.sample] = attitude,
-            Of::Everything => {
-                (found.rates[read.sample], found.attitudes[read.sample]) = (rate, attitude);
+            Of::Everything | Of::Attitude => {
+                if matches!(read.of, Of::Everything) {
+                    found.rates[read.sample] = rate;
+                }
+                found.attitudes[read.sample] = attitude;
+                found.wheel[read.sample] = self.relative_at(read.time, rate);
             }
         };
         // also the door where the start is checked
@@ -108,11 +139,11 @@ impl Disturbances {
             let split = reads.partition_point(|read| read.time < 0.0);
             let last = reads.last().map_or(0.0, |read| read.time);
             let count = |reads: &[Read]| reads.iter().filter(|read| !matches!(read.of, Of::Attitude)).count();
-            let mut path = Path::new(self, inertia, omega, count(&reads[split..]), last, random);
+            let mut path = Path::new(self, inertia, omega, count(&reads[split..]), Some(last), random);
             for read in &reads[split..] {
                 store(read, path.at(read.time)?);
             }
-            let mut path = Path::new(self, inertia, omega, count(&reads[..split]), 0.0, random);
+            let mut path = Path::new(self, inertia, omega, count(&reads[..split]), None, random);
             for read in reads[..split].iter().rev() {
                 store(read, path.at(read.time)?);
             }
@@ -125,6 +156,8 @@ impl Disturbances {
 pub(super) struct True {
     pub(super) rates: Vec<Vector3<f64>>,
     pub(super) attitudes: Vec<Quat<f64>>,
+    /// Momentum of the wheels relative to the body, N m s.
+    pub(super) wheel: Vec<Vector3<f64>>,
 }
 
 /// What is read of a sample.
@@ -147,7 +180,9 @@ struct Path<'a> {
     acting: &'a Disturbances,
     scale: f64,
     inverse: Matrix3<f64>,
-    /// Times and impulses of the torque's noise, the next one last.
+    /// Whether it is followed to later times.
+    forward: bool,
+    /// Times and impulses of the torque's noise, the next one last; and zeros where the torque of a motor changes.
     impulses: Vec<(f64, Vector3<f64>)>,
     terms: usize,
     steps: usize,
@@ -164,12 +199,13 @@ struct Series {
 }
 
 impl<'a> Path<'a> {
+    /// Up to the time `last`, or to times before 0.
     fn new(
         acting: &'a Disturbances,
         inertia: &Inertia,
         omega: Vector3<f64>,
         reads: usize,
-        last: f64,
+        last: Option<f64>,
         random: &mut Random,
     ) -> Self {
         let scale = libm::scalbn(1.0, libm::ilogb(inertia.tensor().trace()));
@@ -179,33 +215,38 @@ impl<'a> Path<'a> {
         let inverse = frame.matrix() * Matrix3::from_diagonal(&reciprocals) * frame.matrix().transpose();
         let mut impulses = Vec::new();
         let noisy = acting.torque_noise > 0.0;
-        if noisy && last > 0.0 {
+        let forward = last.is_some();
+        if let Some(last) = last.filter(|last| noisy && *last > 0.0) {
             let count = IMPULSES * reads;
             let width = last / count as f64;
             let size = acting.torque_noise * width.sqrt() / scale;
             impulses =
                 (0..count).map(|i| ((i as f64 + 0.5) * width, random.normal_vector() * size)).collect();
-            impulses.reverse();
         }
+        let ahead = |time: &f64| if forward { *time > 0.0 } else { *time < 0.0 };
+        impulses.extend(acting.switchings().filter(ahead).map(|time| (time, Vector3::zeros())));
+        impulses.sort_by(|a, b| b.0.abs().total_cmp(&a.0.abs()));
         let terms = if noisy { TERMS_OF_IMPULSES } else { TERMS };
         let mut path = Path {
             acting,
             scale,
             inverse,
+            forward,
             impulses,
             terms,
             steps: 0,
             most_steps: STEPS * (reads + 1),
             series: Series { time: 0.0, momentum: Vec::new(), rate: Vec::new(), attitude: Vec::new() },
         };
-        path.expand(0.0, j * omega + acting.wheel / scale, Quat::identity());
+        let [wheel, _] = acting.wheels_at(0.0, forward);
+        path.expand(0.0, j * omega + wheel / scale, Quat::identity());
         path
     }
 
     /// The series about `time`, where the momentum is `p` and the attitude `q`.
     fn expand(&mut self, time: f64, p: Vector3<f64>, q: Quat<f64>) {
         let a = self.acting;
-        let wheel = [a.wheel_at(time) / self.scale, a.wheel_rate / self.scale];
+        let wheel = a.wheels_at(time, self.forward).map(|h| h / self.scale);
         let (mut momentum, mut rate) = (vec![p], Vec::with_capacity(self.terms));
         for n in 0..self.terms {
             let own = momentum[n] - wheel.get(n).copied().unwrap_or_default();
@@ -233,7 +274,7 @@ impl<'a> Path<'a> {
     /// How far from its centre the series holds, if the motion goes on for `span`.
     fn reach(&self, span: f64) -> f64 {
         let p = &self.series.momentum;
-        let wheel = self.acting.wheel_rate / self.scale;
+        let wheel = self.acting.wheels_at(self.series.time, self.forward)[1] / self.scale;
         let size = p[0].norm() + (p[1].norm() + wheel.norm()) * span.abs();
         let ends = [self.terms - 1, self.terms].map(|n| {
             let last = p[n].norm();
@@ -268,7 +309,7 @@ impl<'a> Path<'a> {
 
     /// Rate and attitude at `time`; times must move away from 0.
     fn at(&mut self, time: f64) -> Result<(Vector3<f64>, Quat<f64>), SimulationError> {
-        while let Some((when, impulse)) = self.impulses.pop_if(|(when, _)| *when <= time) {
+        while let Some((when, impulse)) = self.impulses.pop_if(|(when, _)| when.abs() <= time.abs()) {
             self.advance(when)?;
             let p = horner(&self.series.momentum, when - self.series.time) + impulse;
             let q = self.attitude(when);

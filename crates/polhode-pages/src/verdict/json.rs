@@ -78,6 +78,9 @@ pub fn object(outcome: &Outcome) -> Value {
             "size": found.size, "factor": found.factor,
             "frame": found.constant.map(|(frame, _)| frame.to_string()), "torque": found.constant.map(|(_, torque)| torque),
         })),
+        "other_wheel": verdict.other_wheel.map(|found| json!({
+            "number": found.number, "speed": found.speed, "held": found.is_held,
+        })),
         "advice": outcome.advice.as_ref().map(advice::object),
         "resolution": {
             "noise": verdict.noise.map(|noise| [noise.attitude, noise.rates]),

@@ -117,6 +117,7 @@ pub(super) fn causes(outcome: &Outcome) -> Vec<String> {
     let mut lines = verdict.signature.as_ref().map_or(Vec::new(), integrator);
     lines.extend(verdict.other_body.as_ref().map(ToString::to_string));
     lines.extend(verdict.other_torque.as_ref().map(ToString::to_string));
+    lines.extend(verdict.other_wheel.as_ref().map(ToString::to_string));
     lines.extend(outcome.advice.as_ref().map(advice::sentence));
     lines
 }

@@ -30,10 +30,10 @@ fn motion(moments: [f64; 3], omega: V) -> Result<FreeMotion, Error> {
     FreeMotion::from_omega(&inertia, Default::default(), omega).map_err(unexpected)
 }
 
-/// The largest relative error of energy and of L in space, over a thousand radians of every body of the catalogue.
+/// The largest relative error of energy and of L in space, over a thousand radians of every body of the catalogue without wheels.
 fn conserved(s: &mut Statements) -> Result<(), Error> {
     let (mut energy_error, mut momentum_error) = (0.0_f64, 0.0_f64);
-    for named in catalogue::bodies() {
+    for named in catalogue::bodies().into_iter().filter(|named| named.wheels.is_empty()) {
         let omega = V::from(named.omega_body);
         let free = FreeMotion::from_omega(&named.inertia, Default::default(), omega).map_err(unexpected)?;
         let body = free.body();

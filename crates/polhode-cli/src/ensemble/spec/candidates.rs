@@ -56,7 +56,8 @@ impl Candidates {
     /// What is wrong with row `k`.
     fn check(&self, k: u64, acting: &Acting, plan: &Plan) -> Result<(), String> {
         let member = self.member(k)?;
-        let body = acting.on(member.inertia).map_err(|error| error.to_string())?;
+        let body = acting.of_start(member.inertia, plan.start, member.omega_body);
+        let body = body.map_err(|error| error.to_string())?;
         plan.check(&body, member.attitude, member.omega_body)
     }
 

@@ -34,7 +34,8 @@ impl Watched {
         }
         // what is wrong with it is wrong for every member
         let member = spec.member(0).map_err(|error| refused(&error))?;
-        let body = spec.acting.on(member.inertia).map_err(|error| refused(&error))?;
+        let body = spec.acting.of_start(member.inertia, start, member.omega_body);
+        let body = body.map_err(|error| refused(&error))?;
         let bounded = typed.made(&body).map_err(|error| refused(&error))?.is_bounded();
         let every = event_of.seconds("every")?;
         if every.is_some_and(|every| every <= 0.0) {

@@ -10,9 +10,10 @@ mod spread;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use polhode::body::{Body, Member, Population, Wheel};
+use polhode::body::{Body, Member, Population, WheelAtStart};
 use polhode::flow::TumblingPopulation;
 use polhode::inertia::Inertia;
+use polhode::rotation::Vec3;
 use polhode::run::MemberError;
 use polhode_files::error::Error;
 use polhode_files::read;
@@ -64,16 +65,24 @@ enum Source {
 pub(super) struct Acting {
     weight_moment: [f64; 3],
     forces: Forces,
-    wheels: Vec<Wheel>,
+    wheels: Vec<WheelAtStart>,
 }
 
 impl Acting {
-    /// The body of a member.
+    /// The body of a member without its wheels.
     pub(super) fn on(&self, inertia: Inertia) -> Result<Body, MemberError> {
         let body = Body::heavy(inertia, self.weight_moment.into())?;
         // what is wrong with a force is wrong for every inertia, and was found out when the specification was read
-        let body = self.forces.act_on(body.clone()).unwrap_or(body);
-        Ok(self.wheels.iter().try_fold(body, |body, wheel| body.with_wheel(*wheel))?)
+        Ok(self.forces.act_on(body.clone()).unwrap_or(body))
+    }
+
+    /// The body of a member that turns at `omega`, rad/s, body axes, at the time `t`, s, of its start.
+    pub(super) fn of_start(&self, inertia: Inertia, t: f64, omega: Vec3<f64>) -> Result<Body, MemberError> {
+        Ok(self.on(inertia)?.with_wheels_at_start(&self.wheels, t, omega.into())?)
+    }
+
+    pub(super) fn wheels(&self) -> &[WheelAtStart] {
+        &self.wheels
     }
 }
 

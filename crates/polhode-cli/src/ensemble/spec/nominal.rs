@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::Matrix3;
-use polhode::body::{Body, Orbit, Wheel};
+use polhode::body::{Body, Orbit, WheelAtStart};
 use polhode::catalogue;
 use polhode::flow::TumblingElements;
 use polhode::inertia::Inertia;
@@ -11,7 +11,7 @@ use polhode::rotation::{Quat, Vec3};
 use polhode_files::error::{Error, tell};
 use polhode_files::instant::{Epoch, date, time_scale};
 use polhode_files::toml_file::Section;
-use polhode_files::wheel::GivenWheel;
+use polhode_files::wheel;
 
 use super::{Acting, elements};
 use crate::flags::body::{Described, described};
@@ -144,11 +144,8 @@ impl Nominal {
         start: &Section<'_>,
         inertia: &Inertia,
     ) -> Result<(), Error> {
-        let carried = self
-            .acting
-            .wheels
-            .iter()
-            .try_fold(Body::free(inertia.clone()), |body, wheel| body.with_wheel(*wheel));
+        let free = Body::free(inertia.clone());
+        let carried = free.with_wheels_at_start(&self.acting.wheels, 0.0, Default::default());
         let _ = carried.map_err(|error| body.at("wheels", &error.to_string()))?;
         let heavy = Body::heavy(inertia.clone(), self.acting.weight_moment.into());
         let heavy = heavy.map_err(|error| force.at("weight_moment", &error.to_string()))?;
@@ -195,18 +192,11 @@ fn inertia(body: &Section<'_>, key: &str) -> Result<Described, Error> {
     )
 }
 
-/// The wheels of every member: those of the body's file and of `wheels` in `[body]`. A member differs in its start, by which a wheel that
-/// is not held has its momentum.
-fn wheels(body: &Section<'_>, found: Option<&Described>) -> Result<Vec<Wheel>, Error> {
+/// The wheels of every member: those of the body's file and of `wheels` in `[body]`.
+fn wheels(body: &Section<'_>, found: Option<&Described>) -> Result<Vec<WheelAtStart>, Error> {
     let mut given = found.map_or(Vec::new(), |found| found.wheels.clone());
-    given.extend(GivenWheel::list_of_toml(body)?);
-    match given.iter().all(GivenWheel::is_held) {
-        true => Ok(given.iter().map(GivenWheel::held).collect()),
-        false => Err(body.at(
-            "wheels",
-            "members of an ensemble carry wheels whose speed is held; leave free and torque out",
-        )),
-    }
+    given.extend(wheel::list_of_toml(body)?);
+    Ok(given)
 }
 
 /// What acts, by `[force]` or, of the weight and the orbit, by the catalogue.

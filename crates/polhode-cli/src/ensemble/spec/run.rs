@@ -6,6 +6,7 @@ use std::sync::Arc;
 use polhode::body::{Body, Clock};
 use polhode::flow::ExactMotion;
 use polhode::method::{AnyMethod, Claimed, method};
+use polhode::rotation::{Quat, Vec3};
 use polhode::run::Schedule;
 use polhode_files::error::{Error, unexpected};
 use polhode_files::instant::Epoch;
@@ -79,7 +80,8 @@ impl Plan {
             let missing = || run.at("step", &format!("missing; method {name} needs a step in seconds"));
             let clock = Clock { start, step: step.or(regular).ok_or_else(missing)? };
             if let Some(inertia) = &nominal.inertia {
-                let body = nominal.acting.on(inertia.clone()).map_err(unexpected)?;
+                let omega = nominal.omega.unwrap_or_else(Vec3::zero);
+                let body = nominal.acting.of_start(inertia.clone(), start, omega).map_err(unexpected)?;
                 let refused = |error: &dyn std::fmt::Display| run.at("method", &error.to_string());
                 found.prepare_f64(clock, &body).map_err(|error| refused(&error))?;
             }
@@ -114,7 +116,7 @@ impl Plan {
     /// Whether the nominal member can be followed so far; what is wrong with it is mostly wrong with all.
     pub(super) fn check_nominal(&self, run: &Section<'_>, nominal: &Nominal) -> Result<(), Error> {
         let (Some(inertia), Some(omega)) = (&nominal.inertia, nominal.omega) else { return Ok(()) };
-        let body = nominal.acting.on(inertia.clone()).map_err(unexpected)?;
+        let body = nominal.acting.of_start(inertia.clone(), self.start, omega).map_err(unexpected)?;
         self.check(&body, nominal.attitude, omega).map_err(|error| {
             let message = format!(
                 "{error}; name a stepping method and a step, such as method = \"kick-drift@srkn-6b\""
@@ -124,12 +126,7 @@ impl Plan {
     }
 
     /// Whether a body has a motion in closed form as far as the last time, where that is asked for.
-    pub(super) fn check(
-        &self,
-        body: &Body,
-        attitude: polhode::rotation::Quat<f64>,
-        omega: polhode::rotation::Vec3<f64>,
-    ) -> Result<(), String> {
+    pub(super) fn check(&self, body: &Body, attitude: Quat<f64>, omega: Vec3<f64>) -> Result<(), String> {
         let start = body.enter_omega(attitude, omega).map_err(|error| error.to_string())?;
         let Motion::Exact { elapsed } = &self.motion else { return Ok(()) };
         let motion = ExactMotion::from_point(body, start).map_err(|error| error.to_string())?;
