@@ -44,17 +44,17 @@ def speed(z, w, x):
     return norm(*np.gradient(unit, x, axis=1, edge_order=2))
 
 
-def direct(nome, h, x):
+def direct(nome, v, x):
     """Error of the sums, and how fast the pair moves with x."""
-    n, g = np.arange(4), nome / h
+    n, g = np.arange(4), nome / v
     sign = (-1.0) ** n
-    one, two = nome ** (2 * n * n - n) * h**n, nome ** (2 * n * n) * g**n
+    one, two = nome ** (2 * n * n - n) * v**n, nome ** (2 * n * n) * g**n
     even, odd = sign * (one + two), sign * (one - two)
     even[0] = 1
     z0, z1 = polynomial(even, "cos"), polynomial(odd, "sin")
-    one, two = nome ** (2 * n * n + n) * h**n, nome ** (2 * n * n + 2 * n) * g ** (n + 1)
-    w0 = polynomial(np.sqrt(h) * sign * (one + two), "sin odd")
-    w1 = polynomial(np.sqrt(h) * sign * (one - two), "cos odd")
+    one, two = nome ** (2 * n * n + n) * v**n, nome ** (2 * n * n + 2 * n) * g ** (n + 1)
+    w0 = polynomial(np.sqrt(v) * sign * (one + two), "sin odd")
+    w1 = polynomial(np.sqrt(v) * sign * (one - two), "cos odd")
     s, c = np.sin(x), np.cos(x)
     big = (c - s) * (c + s)
     of_x = 3 * abs(big) + 2 * (abs(s) + abs(c)) * KERNEL
@@ -69,17 +69,17 @@ def direct(nome, h, x):
     return (total / norm(z, w)).max(), speed(z, w, x).max()
 
 
-def dual(nome, a, b):
-    """Error of the sums, how fast the pair moves with b, and |b| times that."""
+def dual(nome, xi, chi):
+    """Error of the sums, how fast the pair moves with chi, and |chi| times that."""
     n = np.arange(4)
     weight = nome ** (n * (n + 1) / 2)
-    even, odd = weight * np.cos((2 * n + 1) * a), weight * np.sin((2 * n + 1) * a)
+    even, odd = weight * np.cos((2 * n + 1) * xi), weight * np.sin((2 * n + 1) * xi)
     sign = (-1.0) ** n
     z0, z1 = polynomial(even, "cos odd"), polynomial(odd, "sin odd")
     w0, w1 = polynomial(even * sign, "sin odd"), polynomial(odd * sign, "cos odd")
-    sinh, cosh = np.sinh(b), np.cosh(b)
-    big = np.cosh(2 * b)
-    of_x, of_each = 4 * big, 1.5 * cosh  # 1/e^b and the sum or difference
+    sinh, cosh = np.sinh(chi), np.cosh(chi)
+    big = np.cosh(2 * chi)
+    of_x, of_each = 4 * big, 1.5 * cosh  # 1/e^chi and the sum or difference
     z = cosh * value(z0, big) + 1j * sinh * value(z1, big)
     w = sinh * value(w0, big) + 1j * cosh * value(w1, big)
     total = norm(
@@ -88,25 +88,25 @@ def dual(nome, a, b):
             for factor, p in [(cosh, z0), (sinh, z1), (sinh, w0), (cosh, w1)]
         )
     )
-    fast = speed(z, w, b)
-    return (total / norm(z, w)).max(), fast.max(), (fast * b).max()
+    fast = speed(z, w, chi)
+    return (total / norm(z, w)).max(), fast.max(), (fast * chi).max()
 
 
 def main():
     x = np.linspace(0, np.pi, 721)
     cells = [(q, q + (1 - q) * part) for q in np.linspace(1e-9, 0.2, 80) for part in np.linspace(0, 1, 80)]
-    sums, fast = np.max([direct(q, h, x) for q, h in cells], axis=0)
+    sums, fast = np.max([direct(q, v, x) for q, v in cells], axis=0)
     print(f"direct form: sums {sums:.2f}, speed {fast:.3f}")
     largest = np.exp(-np.pi**2 / np.log(5))
     cells = [
-        (q, a)
+        (q, xi)
         for q in np.concatenate([np.geomspace(1e-30, 1e-5, 20), np.linspace(1e-5, largest, 60)])
-        for a in np.linspace(0, np.pi / 4, 80)
+        for xi in np.linspace(0, np.pi / 4, 80)
     ]
     sums, fast, shifted = np.max(
-        [dual(q, a, np.linspace(0, min(-np.log(q) / 4, 30), 400)) for q, a in cells], axis=0
+        [dual(q, xi, np.linspace(0, min(-np.log(q) / 4, 30), 400)) for q, xi in cells], axis=0
     )
-    print(f"dual form: sums {sums:.2f}, speed {fast:.3f}, |b| times speed {shifted:.3f}")
+    print(f"dual form: sums {sums:.2f}, speed {fast:.3f}, |chi| times speed {shifted:.3f}")
 
 
 if __name__ == "__main__":

@@ -360,7 +360,7 @@ mod tests {
         let record = Trajectory::new((0..20).map(f64::from).collect()).with_rates(vec![[0.1, 0.2, 0.3]; 20]);
         let columns = Columns::new(&record);
         let windows = columns.windows();
-        look(&Case { columns, windows, claims, bodies: Vec::new() })
+        look(&Case { columns, windows, claims, bodies: Vec::new(), told: None })
     }
 
     #[test]
