@@ -91,7 +91,7 @@ pub use report::motion::FittedMotion;
 pub use report::next_step::NextStep;
 pub use report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, Systematic};
 pub use report::parts::{Halves, Scatter};
-pub use report::torque_free::{InvariantTrend, Whiteness};
+pub use report::torque_free::{InvariantTrend, Memory, Whiteness};
 pub use report::warning::Warning;
 pub use settings::Settings;
 pub use settings::known::Known;

@@ -175,7 +175,10 @@ thresholds! {
         OPEN: f64 = 1e-12,
             "singular value over the largest, below which it is rounding and a part of the record leaves the number open", DERIVED;
         SCATTERED: f64 = 4.264_890_793_922_825,
-            "standard normal deviate with a chance of 1e-5: the parts of a record scatter by more than their noise", DERIVED;
+            "standard normal deviate with a chance of 1e-5: the parts of a record scatter, or pull the tensor, by more than their noise", DERIVED;
+        DIFFERING: f64 = 1.644_853_626_951_472,
+            "standard normal deviate with a chance of 0.05: an unknown beside the tensor has the deviation that the parts of a record tell", "what_parts_of_a_record_differ_in_is_less_certain";
+        NAMED: f64 = 3.090_232_306_167_813, "the same with a chance of 1e-3, from which on a warning names it", DERIVED;
         NOISY: f64 = 4.0,
             "mean square residual of a segment over that of the median segment that is worth one", UNMEASURED;
         UNCERTAIN: f64 = 5e-3,
@@ -190,6 +193,8 @@ thresholds! {
     trend: "trends of what a free body keeps, and whiteness" {
         SIGNIFICANT: f64 = 5.0,
             "standard deviations of a trend or a correlation that count", "torque_is_seen_in_the_drifts";
+        MEMORY: f64 = 4.753_424_308_822_899,
+            "standard normal deviate with a chance of 1e-6: residuals within one turn are correlated", DERIVED;
     }
     identifiability: "what a record determines" {
         VAGUE: f64 = 0.1,
@@ -208,6 +213,7 @@ thresholds! {
         ALIGNMENT: f64 = 0.01, "error of a right angle, rad", UNMEASURED;
         LARGEST: f64 = 0.05,
             "deviation of misalignments, rad, and of axis scales that are tried beside a fit", UNMEASURED;
+        HELD: f64 = 1e-6, "deviation of scale and alignment while the tensor is that of a sphere", UNMEASURED;
         DELAY: f64 = 1e-3, "delay of an axis, s", UNMEASURED;
         WHEEL: f64 = 1e-3, "momentum of a wheel over that of the body", UNMEASURED;
         WALK: f64 = 1e-4, "random walk of the offsets, rad/s per root of a second", UNMEASURED;

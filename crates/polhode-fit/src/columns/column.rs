@@ -16,6 +16,7 @@ use crate::columns::walk::Walk;
 use crate::physical::coordinates::{Coordinates, tensor};
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::Terms;
+use crate::thresholds::errors::HELD;
 
 macro_rules! kinds {
     ($($name:ident),*) => {
@@ -61,6 +62,13 @@ impl Column {
     /// With this prior, or none.
     pub(crate) fn with_prior(self, prior: Option<f64>) -> Column {
         Column { prior, ..self }
+    }
+
+    /// As good as known where it is an error of scale or alignment. The equations of a sphere, J ω' = 0, would be met by rates without a
+    /// scale, whatever they are.
+    pub(crate) fn at_sphere(self) -> Column {
+        let prior = self.prior.map_or(HELD, |prior| prior.min(HELD));
+        if self.effect().distortion().is_some() { self.with_prior(Some(prior)) } else { self }
     }
 
     /// Of one stretch alone, by its number in the record.

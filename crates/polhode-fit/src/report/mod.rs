@@ -4,6 +4,7 @@ pub(crate) mod answer;
 pub(crate) mod attitudes;
 pub(crate) mod averages;
 pub(crate) mod deviations;
+pub(crate) mod differing;
 pub(crate) mod estimate;
 pub(crate) mod exact;
 pub(crate) mod facts;

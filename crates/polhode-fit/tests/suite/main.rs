@@ -14,6 +14,7 @@ mod poses;
 mod prior;
 mod simulate;
 mod sparse;
+mod told;
 mod torque;
 mod units;
 mod wheel;
