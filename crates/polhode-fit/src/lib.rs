@@ -51,6 +51,7 @@ mod setters;
 mod settings;
 mod signal;
 mod simulate;
+mod smoothed;
 mod solve;
 mod sparse;
 mod thresholds;

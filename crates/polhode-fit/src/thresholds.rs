@@ -340,6 +340,14 @@ thresholds! {
         MIRRORED: f64 = 0.05,
             "share of the largest singular value that the smallest has where rates are the mirror image of attitudes", "a_turn_is_found_and_a_mirror_is_seen";
     }
+    smoothed: "attitudes under torques" {
+        STEP: f64 = 0.03, "longest step of the integrator, rad: errors of order 1e-9 a radian", "motions_are_those_of_the_closed_forms";
+        PARTS: f64 = 1000.0, "most of them between two samples", UNMEASURED;
+        ALONE: f64 = 0.5, "turn within which samples tell of each other where the search begins, rad", UNMEASURED;
+        ROUNDS: usize = 40, "most rounds of filter and smoother; some ten do", UNMEASURED;
+        DECADES: usize = 14, "decades of torque noise that are tried", UNMEASURED;
+        WALKS: f64 = 10.0, "gain of twice the log-likelihood by torque noise from which on a closed form is given up: noise brings it once in 1,000 records", DERIVED;
+    }
     poses: "records of attitudes" {
         GAP: f64 = 8.0, "median intervals that make a gap", UNMEASURED;
         JUMP: f64 = 8.0, "median turns beyond which a single attitude lies off both neighbours", "a_bad_frame_is_a_jump_and_a_turn_is_none";

@@ -115,8 +115,16 @@ impl Unknowns {
 
 /// Torque and sensor at `unknowns`, of the columns that act on a stretch.
 pub(crate) fn terms_of(columns: &[Column], unknowns: &Unknowns, stretch: &Stretch) -> Terms {
-    let mut terms = Terms::at(tensor(&unknowns.x));
-    let acting = columns.iter().zip(&unknowns.c).filter(|(column, _)| column.acts_on(stretch));
+    sum(columns.iter().zip(&unknowns.c).filter(|(column, _)| column.acts_on(stretch)), &unknowns.x)
+}
+
+/// The same of all columns.
+pub(crate) fn terms_of_all(columns: &[Column], unknowns: &Unknowns) -> Terms {
+    sum(columns.iter().zip(&unknowns.c), &unknowns.x)
+}
+
+fn sum<'a>(acting: impl Iterator<Item = (&'a Column, &'a f64)>, x: &Coordinates) -> Terms {
+    let mut terms = Terms::at(tensor(x));
     for (column, &value) in acting {
         column.effect().add_to(&mut terms, value);
     }

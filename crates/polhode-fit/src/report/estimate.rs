@@ -21,6 +21,8 @@ pub enum Method {
     WeakForm,
     /// Maximum likelihood on the exact motion of the free body.
     ExactMotion,
+    /// Maximum likelihood of attitudes under torques, by a Kalman filter and smoother.
+    Smoother,
 }
 
 /// Whitened residuals of one segment: standard normal where model and noise are right.

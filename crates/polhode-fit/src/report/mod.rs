@@ -19,6 +19,7 @@ pub(crate) mod parts;
 pub(crate) mod scale;
 pub(crate) mod segments;
 pub(crate) mod sensor;
+pub(crate) mod smoothed;
 pub(crate) mod systematic;
 pub(crate) mod torque_free;
 pub(crate) mod warning;

@@ -184,6 +184,13 @@ pub(super) fn of_likelihood(e: &Estimate, doubts: &Doubts) -> Vec<Warning> {
     list
 }
 
+/// The same of attitudes under torques; `misfit` is what is left over the noise, where that is known, `density` that of torque noise.
+pub(super) fn of_smoothed(e: &Estimate, misfit: Option<f64>, density: f64) -> Vec<Warning> {
+    let doubts = Doubts { misfit, widened: None, constant: None };
+    let noise = (density > 0.0).then_some(Warning::TorqueNoise { density, unexplained: e.unexplained });
+    noise.into_iter().chain(of_likelihood(e, &doubts)).collect()
+}
+
 /// What of the answer itself limits its use, however it was found.
 pub(super) fn of_answer(e: &Estimate) -> Vec<Warning> {
     let mut list: Vec<Warning> = e.active_constraints.iter().cloned().map(Warning::Held).collect();

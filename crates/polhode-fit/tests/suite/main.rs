@@ -11,6 +11,7 @@ mod measured;
 mod models;
 mod next_step;
 mod poses;
+mod poses_driven;
 mod prior;
 mod simulate;
 mod sparse;

@@ -19,6 +19,9 @@ use super::flights::Spans;
 pub(super) fn method(e: &Estimate) -> &'static str {
     match e.method {
         Method::ExactMotion => "maximum likelihood on the exact motion of the free body",
+        Method::Smoother => {
+            "maximum likelihood by a Kalman filter and smoother about the motion under torques"
+        }
         _ => METHOD,
     }
 }
