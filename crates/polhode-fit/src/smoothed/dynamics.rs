@@ -112,7 +112,7 @@ impl Law {
             noise: [Square::zeros(); 2],
         };
         let parts = (duration.abs() * start.rate.norm().max(1.0) / STEP).ceil().max(1.0);
-        if !(parts <= PARTS) {
+        if parts.is_nan() || parts > PARTS {
             return None;
         }
         let h = duration / parts;

@@ -109,7 +109,7 @@ pub(crate) fn gain_of_noise(
 /// over its fourth power.
 fn boundless(tracks: &[Track]) -> Level {
     let spans = tracks.iter().map(|t| t.reach() / t.times.len() as f64);
-    Level { torque: 2.0 * spans.fold(0.0, f64::max) / ALONE.powi(4), shape: 0 }
+    Level { torque: 2.0 * spans.fold(0.0, f64::max) / (ALONE * ALONE * ALONE * ALONE), shape: 0 }
 }
 
 impl Found {

@@ -4,8 +4,8 @@ use nalgebra::Matrix3;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_fit::{
-    Disturbances, Gyroscope, Record, SensorPriors, Settings, TorqueModel, TorqueNoise, Warning, fit,
-    simulate_with,
+    Disturbances, Gyroscope, Nuisance, Record, SensorPriors, Settings, TorqueModel, TorqueNoise, Warning,
+    fit, simulate_with,
 };
 
 use crate::measured::torques::motion;
@@ -87,7 +87,8 @@ fn what_parts_of_a_record_differ_in_is_less_certain() {
                 Warning::Differing { unknowns } => Some(unknowns),
                 _ => None,
             });
-            let sum: f64 = e.torque.coefficients.iter().map(|c| (c.value / c.sigma).powi(2) / 3.0).sum();
+            let squared = |c: &Nuisance| (c.value / c.sigma) * (c.value / c.sigma);
+            let sum: f64 = e.torque.coefficients.iter().map(squared).sum::<f64>() / 3.0;
             squares[k] += sum / count as f64;
             println!("{size}: {differing:?}, squares {sum:.2}");
             match k {
