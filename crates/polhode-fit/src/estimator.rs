@@ -20,6 +20,7 @@ use crate::models::weighed::spread;
 use crate::physical::coordinates::Form;
 use crate::physical::failure::SolverFailure;
 use crate::physical::nearest::nearest;
+use crate::report::differing::differing;
 use crate::report::estimate::Estimate;
 use crate::report::facts::Facts;
 use crate::report::mirror::reversed;
@@ -193,7 +194,14 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
     let bends = is_free && weak.root.try_inverse().is_some_and(is_vague);
     let spread = if bends { spread + beyond(&stretches, weak.x(), variance) } else { spread };
     let joint = Joint::new(weak, kept, deviation).ok_or_else(information)?;
-    let joint = joint.widened(&spread).ok_or_else(information)?;
+    let differing = differing(weak, deviation * deviation);
+    let of_choice = joint.of_tensor(&spread);
+    let joint = joint.widened(&of_choice).ok_or_else(information)?;
+    let of_parts = differing.as_ref().map(|differing| differing.of(&joint.kept));
+    let joint = match of_parts {
+        Some(more) => joint.widened(&more).ok_or_else(information)?,
+        None => joint,
+    };
     let dissipation = dissipation(&weak.columns, &joint.kept);
     let (told, agreed) = match &prior {
         Some(prior) if completed.is_none() => with_prior(&joint, weak, prior, input)?,
@@ -212,6 +220,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         chosen: &chosen,
         misfit,
         scatter,
+        differing: differing.as_ref(),
         spikes,
         input,
         joint: &joint,

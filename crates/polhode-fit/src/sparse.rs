@@ -9,7 +9,7 @@ use crate::likelihood::descent::Levels;
 use crate::likelihood::growth::follow;
 use crate::likelihood::invariants::tensors_of;
 use crate::likelihood::track::Track;
-use crate::poses::free::Free;
+use crate::poses::free::{Free, Read};
 use crate::report::estimate::Estimate;
 use crate::report::exact::{Told, report};
 use crate::settings::Settings;
@@ -94,12 +94,14 @@ fn explained(record: &Record, settings: &Settings) -> Option<Estimate> {
         without,
         models,
         alternatives,
-        unit,
-        used: long.iter().map(|(k, s)| (*k, middle(s))).collect(),
-        local_noise: None,
-        largest_turn: 0.0,
-        jumps: 0,
-        has_rates: true,
+        read: Read {
+            unit,
+            used: long.iter().map(|(k, s)| (*k, middle(s))).collect(),
+            local_noise: None,
+            largest_turn: 0.0,
+            jumps: 0,
+            has_rates: true,
+        },
     };
     let told = Told { is_inverse: false, gain: None };
     let estimate = free.is_explained(settings).then(|| report(0, settings, &free, told).ok()).flatten();

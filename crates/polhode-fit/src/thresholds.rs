@@ -175,7 +175,10 @@ thresholds! {
         OPEN: f64 = 1e-12,
             "singular value over the largest, below which it is rounding and a part of the record leaves the number open", DERIVED;
         SCATTERED: f64 = 4.264_890_793_922_825,
-            "standard normal deviate with a chance of 1e-5: the parts of a record scatter by more than their noise", DERIVED;
+            "standard normal deviate with a chance of 1e-5: the parts of a record scatter, or pull the tensor, by more than their noise", DERIVED;
+        DIFFERING: f64 = 1.644_853_626_951_472,
+            "standard normal deviate with a chance of 0.05: an unknown beside the tensor has the deviation that the parts of a record tell", "what_parts_of_a_record_differ_in_is_less_certain";
+        NAMED: f64 = 3.090_232_306_167_813, "the same with a chance of 1e-3, from which on a warning names it", DERIVED;
         NOISY: f64 = 4.0,
             "mean square residual of a segment over that of the median segment that is worth one", UNMEASURED;
         UNCERTAIN: f64 = 5e-3,
@@ -190,6 +193,8 @@ thresholds! {
     trend: "trends of what a free body keeps, and whiteness" {
         SIGNIFICANT: f64 = 5.0,
             "standard deviations of a trend or a correlation that count", "torque_is_seen_in_the_drifts";
+        MEMORY: f64 = 4.753_424_308_822_899,
+            "standard normal deviate with a chance of 1e-6: residuals within one turn are correlated", DERIVED;
     }
     identifiability: "what a record determines" {
         VAGUE: f64 = 0.1,
@@ -208,6 +213,7 @@ thresholds! {
         ALIGNMENT: f64 = 0.01, "error of a right angle, rad", UNMEASURED;
         LARGEST: f64 = 0.05,
             "deviation of misalignments, rad, and of axis scales that are tried beside a fit", UNMEASURED;
+        HELD: f64 = 1e-6, "deviation of scale and alignment while the tensor is that of a sphere", UNMEASURED;
         DELAY: f64 = 1e-3, "delay of an axis, s", UNMEASURED;
         WHEEL: f64 = 1e-3, "momentum of a wheel over that of the body", UNMEASURED;
         WALK: f64 = 1e-4, "random walk of the offsets, rad/s per root of a second", UNMEASURED;
@@ -340,6 +346,14 @@ thresholds! {
         FIXED: f64 = 1e8, "information on a number that is fixed, over its own", DERIVED;
         MIRRORED: f64 = 0.05,
             "share of the largest singular value that the smallest has where rates are the mirror image of attitudes", "a_turn_is_found_and_a_mirror_is_seen";
+    }
+    smoothed: "attitudes under torques" {
+        STEP: f64 = 0.03, "longest step of the integrator, rad: errors of order 1e-9 a radian", "motions_are_those_of_the_closed_forms";
+        PARTS: f64 = 1000.0, "most of them between two samples", UNMEASURED;
+        ALONE: f64 = 0.5, "turn within which samples tell of each other where the search begins, rad", UNMEASURED;
+        ROUNDS: usize = 40, "most rounds of filter and smoother; some ten do", UNMEASURED;
+        DECADES: usize = 14, "decades of torque noise that are tried", UNMEASURED;
+        WALKS: f64 = 10.0, "gain of twice the log-likelihood by torque noise from which on a closed form is given up: noise brings it once in 1,000 records", DERIVED;
     }
     poses: "records of attitudes" {
         GAP: f64 = 8.0, "median intervals that make a gap", UNMEASURED;

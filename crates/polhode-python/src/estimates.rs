@@ -135,7 +135,7 @@ impl Estimate {
         self.found.segments
     }
 
-    /// Half width of the test functions, s; `None` of a likelihood on the exact motion.
+    /// Half width of the test functions, s; `None` of a maximum of likelihood.
     #[getter]
     fn radius(&self) -> Option<f64> {
         self.found.radius
@@ -178,7 +178,7 @@ impl Estimate {
     }
 
     /// What each model of the torque makes of the record: a dict by model of `gain` (log-likelihood less that without a torque), `share`,
-    /// `principal`, `sigma_principal`, `unexplained` and `held_out`; of a fit to attitudes those of no torque, drag and a small constant torque.
+    /// `principal`, `sigma_principal`, `unexplained` and `held_out`; of a fit to attitudes in closed form those of no torque, drag and a small constant torque.
     #[getter]
     fn models<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let found = PyDict::new(py);

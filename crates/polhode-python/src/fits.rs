@@ -31,7 +31,7 @@ use crate::units::positive;
 /// better.
 ///
 /// `attitude`: measured attitudes at the times, body to space: quaternions (n, 4) in this `order`, or scipy rotations. They are fitted by
-/// maximum likelihood on the exact motion, alone or with `rates` at the same times, whose axes may be turned against those of the attitudes;
+/// maximum likelihood on the exact motion, or where torques ask for it by a Kalman filter and smoother, alone or with `rates` at the same times, whose axes may be turned against those of the attitudes;
 /// `attitude_noise`, rad, is the standard deviation of one component of their rotation vector, found where it is not given.
 ///
 /// >>> import numpy, polhode

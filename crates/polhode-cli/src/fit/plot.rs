@@ -32,7 +32,7 @@ pub(super) fn without_gaps<'a>(segments: impl Iterator<Item = &'a [f64]>) -> Vec
 pub(super) fn what(estimate: &Estimate) -> &'static str {
     match estimate.method {
         Method::ExactMotion if estimate.attitudes.is_none() => "the rates",
-        Method::ExactMotion => "the attitudes, rotation vectors in body axes,",
+        Method::ExactMotion | Method::Smoother => "the attitudes, rotation vectors in body axes,",
         _ => "the weak equations",
     }
 }
@@ -50,7 +50,9 @@ pub(super) fn residuals(estimate: &Estimate) -> Figure {
         Method::ExactMotion if estimate.attitudes.is_none() => {
             "Residuals of the rates; grey: two standard deviations to each side"
         }
-        Method::ExactMotion => "Residuals of the attitudes; grey: two standard deviations to each side",
+        Method::ExactMotion | Method::Smoother => {
+            "Residuals of the attitudes; grey: two standard deviations to each side"
+        }
         _ => "Whitened residuals of the weak equations; grey: two standard deviations to each side",
     };
     let mut figure = over_time(title, "residual (std. deviations)", single, 380.0);

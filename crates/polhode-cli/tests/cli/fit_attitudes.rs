@@ -150,11 +150,7 @@ fn rates_beside_attitudes_are_fitted_where_they_are_asked_for() {
     }
     refused(2, &format!("fit {file} --from attitudes --wheel 0,0,1,1e-3"), &["--wheel", "--from rates"]);
     refused(2, &format!("fit {file} --from attitudes --gyro-bias 0.1"), &["offset", "no meaning"]);
-    refused(
-        2,
-        &format!("fit {file} --from attitudes --torque drag3"),
-        &["drag in proportion to the momentum"],
-    );
+    refused(2, &format!("fit {file} --from both --torque drag3"), &["drag in proportion to the momentum"]);
 }
 
 #[test]
@@ -181,9 +177,21 @@ fn torques_on_attitudes_are_found_or_refused() {
     assert_eq!(drag["torque"]["model"], "drag");
     let found = &drag["torque"]["coefficients"]["drag"];
     assert!((found["value"].as_f64().unwrap() - 0.02).abs() < 5.0 * found["sigma"].as_f64().unwrap());
-    let noise = output(&format!("{SIMULATE} --attitude-noise 0.01 --torque-noise 0.3"));
-    let noise = scratch.file("noise.csv", noise);
-    refused(1, &format!("fit {noise}"), &["no free motion follows the attitudes", "--window"]);
+    let noise = output(&format!("{SIMULATE} --attitude-noise 0.01 --torque-noise 0.02"));
+    let noise = json(&format!("fit {}", scratch.file("noise.csv", noise)));
+    assert!(noise["method"].as_str().unwrap().contains("filter and smoother"), "{}", noise["method"]);
+    let moments = &noise["principal"];
+    assert!((moments[0].as_f64().unwrap() - 1.0 / 5.6).abs() < 0.02, "{moments}");
+    // turned to and fro about three axes
+    let hand = (0..200).map(|k| {
+        let to_and_fro = |period: u32| (f64::from(k % period) / f64::from(period) - 0.5).abs() - 0.25;
+        let v = [23, 31, 17].map(|period| 1.6 * to_and_fro(period));
+        let w = (1.0 - v.iter().map(|v| v * v).sum::<f64>()).sqrt();
+        format!("{},{w},{},{},{}\n", 0.1 * f64::from(k), v[0], v[1], v[2])
+    });
+    let hand = format!("t,qw,qx,qy,qz\n{}", hand.collect::<String>());
+    let hand = scratch.file("hand.csv", hand);
+    refused(1, &format!("fit {hand}"), &["no free motion follows the attitudes", "--window"]);
     let fast = "simulate --moments 1,2,2.6 --omega 3,10,4 --until 20 --every 0.3 --attitude-noise 0.01";
     let fast = scratch.file("fast.csv", output(fast));
     refused(1, &format!("fit {fast}"), &["beyond pi = 3.14", "rad/s"]);

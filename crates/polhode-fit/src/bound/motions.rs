@@ -13,6 +13,8 @@ use crate::signal::stretch::Stretch;
 pub(crate) struct Motions<'a> {
     euler: Euler,
     each: Vec<(&'a Stretch, Start)>,
+    /// Mean square of a component that they leave of the samples, over the variance of the noise, and the number of components.
+    pub(crate) left: (f64, f64),
 }
 
 impl<'a> Motions<'a> {
@@ -20,8 +22,15 @@ impl<'a> Motions<'a> {
     pub(crate) fn nearest(stretches: &'a [Stretch], x: &Coordinates, variance: f64) -> Option<Self> {
         let euler = Euler::new(tensor(x))?;
         let long = stretches.iter().filter(|s| s.times.len() >= 5);
-        let each = long.map(|s| Some((s, nearest_motion(&euler, s, variance)?))).collect::<Option<_>>()?;
-        Some(Motions { euler, each })
+        let (mut sum, mut components, mut each) = (0.0, 0.0, Vec::new());
+        for s in long {
+            let (start, left) = nearest_motion(&euler, s, variance)?;
+            sum += left;
+            // three numbers of each start follow the noise
+            components += 3.0 * (s.times.len() - 1) as f64;
+            each.push((s, start));
+        }
+        Some(Motions { euler, each, left: (sum / components / variance, components) })
     }
 
     /// The bound on the covariance of the coordinates; `None` where the motions do not determine them.

@@ -90,12 +90,12 @@ fn descend(
     Some((start, now.sum)).filter(|(_, sum)| sum.is_finite())
 }
 
-/// The motion of a given tensor that explains the samples of a stretch; `None` if none was found.
+/// The motion of a given tensor that explains the samples of a stretch, and the sum of squares that it leaves; `None` if none was found.
 ///
 /// The sum of squares over a whole stretch has many minima, one for each number of turns that the motion may be ahead or behind.
 /// A window within which the motion turns by little has one, and what it leaves uncertain of the motion in a window
 /// twice as long is small against a turn: each window starts where the one before has ended.
-pub(super) fn nearest_motion(euler: &Euler, s: &Stretch, variance: f64) -> Option<Start> {
+pub(super) fn nearest_motion(euler: &Euler, s: &Stretch, variance: f64) -> Option<(Start, f64)> {
     let samples = Means::new(s, 0.0);
     let coarse = Means::new(s, WIDTH);
     let mean = s.rates.iter().sum::<Vector3<f64>>() / s.rates.len() as f64;
@@ -125,7 +125,7 @@ pub(super) fn nearest_motion(euler: &Euler, s: &Stretch, variance: f64) -> Optio
             radius *= 2.0;
         }
         let (start, left) = descend(euler, &samples, 0..s.times.len(), start, variance)?;
-        (left <= most).then_some(start)
+        (left <= most).then_some((start, left))
     })
 }
 

@@ -16,6 +16,7 @@ use crate::columns::walk::Walk;
 use crate::physical::coordinates::{Coordinates, tensor};
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::Terms;
+use crate::thresholds::errors::HELD;
 
 macro_rules! kinds {
     ($($name:ident),*) => {
@@ -63,6 +64,13 @@ impl Column {
         Column { prior, ..self }
     }
 
+    /// As good as known where it is an error of scale or alignment. The equations of a sphere, J ω' = 0, would be met by rates without a
+    /// scale, whatever they are.
+    pub(crate) fn at_sphere(self) -> Column {
+        let prior = self.prior.map_or(HELD, |prior| prior.min(HELD));
+        if self.effect().distortion().is_some() { self.with_prior(Some(prior)) } else { self }
+    }
+
     /// Of one stretch alone, by its number in the record.
     pub(crate) fn of_segment(self, segment: usize) -> Column {
         Column { segment: Some(segment), ..self }
@@ -107,8 +115,16 @@ impl Unknowns {
 
 /// Torque and sensor at `unknowns`, of the columns that act on a stretch.
 pub(crate) fn terms_of(columns: &[Column], unknowns: &Unknowns, stretch: &Stretch) -> Terms {
-    let mut terms = Terms::at(tensor(&unknowns.x));
-    let acting = columns.iter().zip(&unknowns.c).filter(|(column, _)| column.acts_on(stretch));
+    sum(columns.iter().zip(&unknowns.c).filter(|(column, _)| column.acts_on(stretch)), &unknowns.x)
+}
+
+/// The same of all columns.
+pub(crate) fn terms_of_all(columns: &[Column], unknowns: &Unknowns) -> Terms {
+    sum(columns.iter().zip(&unknowns.c), &unknowns.x)
+}
+
+fn sum<'a>(acting: impl Iterator<Item = (&'a Column, &'a f64)>, x: &Coordinates) -> Terms {
+    let mut terms = Terms::at(tensor(x));
     for (column, &value) in acting {
         column.effect().add_to(&mut terms, value);
     }

@@ -36,9 +36,9 @@ pub enum PoseFault {
         /// Noise of a component, rad.
         noise: f64,
     },
-    /// No free motion of any body follows the attitudes.
+    /// No motion of any body follows the attitudes, under no torque that a fit has a model of.
     #[error(
-        "no free motion follows the attitudes, nor one that drag or a small constant torque slows: the nearest one misses them by {residual:.2e} rad (root mean square of a component){}; torques \
+        "no free motion follows the attitudes, nor one under drag, a constant torque or small torques at random: the nearest one misses them by {residual:.2e} rad (root mean square of a component){}; torques \
          act, or a frame or a sequence of angles is read wrongly, or the body turns by more than half a turn between samples ({turn:.2} rad \
          as read)",
         noise.map_or(String::new(), |noise| format!(", where their noise is {noise:.2e} rad"))
@@ -98,10 +98,10 @@ pub enum PoseFault {
         /// Root mean square of the rates over that of the attitudes.
         scale: f64,
     },
-    /// A torque that a fit of attitudes has no model of.
+    /// A torque that a fit of attitudes with rates beside them has no model of.
     #[error(
-        "a fit of attitudes reckons with drag in proportion to the momentum and with a small constant torque, and with no other; ask for one \
-         of these, or fit the rates alone"
+        "where rates stand beside attitudes a fit reckons with drag in proportion to the momentum and with a small constant torque, and with no \
+         other; ask for one of these, or fit the attitudes or the rates alone"
     )]
     Torque,
     /// A setting that only a fit of rates has.

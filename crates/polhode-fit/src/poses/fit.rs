@@ -1,21 +1,34 @@
 //! The fit of a tensor to measured attitudes.
 
+use crate::columns::column::Unknowns;
+use crate::columns::sets::torque_columns;
 use crate::error::FitError;
+use crate::likelihood::choice::Acting;
+use crate::likelihood::growth::Followed;
+use crate::likelihood::motion::Start;
+use crate::likelihood::track::Track;
 use crate::physical::coordinates::{eigen, tensor};
 use crate::poses::fault::PoseFault;
-use crate::poses::free::Free;
+use crate::poses::free::{Begun, Free, Read};
 use crate::poses::record::Poses;
 use crate::report::estimate::Estimate;
 use crate::report::exact::{Told, report};
+use crate::report::smoothed::report as smoothed_report;
 use crate::settings::Settings;
 use crate::settings::torque::{TorqueModel, TorqueNoise};
+use crate::smoothed::choice::choose;
+use crate::smoothed::search::{self as smoothed, Found, Noise};
+use crate::thresholds::judgement::DRIVEN;
 use crate::thresholds::poses::OPEN;
+use crate::thresholds::smoothed::WALKS;
 
 /// Fits one tensor to all segments of measured attitudes, and to the angular velocities beside them where there are any.
 ///
 /// The motion of a free body is known in closed form, and so is its derivative: the tensor is that of the largest likelihood, each
 /// segment with a start of its own. Drag in proportion to the momentum is part of the closed form, a small constant torque is reckoned with to
-/// first order; where neither explains what the free motion leaves, there is no answer. The tensor is in the body axes of the attitudes, or in those of the rates where there are rates.
+/// first order. Where none of these explains the attitudes, or another torque or torque noise is asked for, a Kalman filter and smoother about the
+/// motion under the torque takes their place, with torque noise for the rest; not where there are rates beside the attitudes. The tensor is in the body axes of the attitudes, or in those
+/// of the rates where there are rates.
 /// Attitudes of a body that moves alone do not tell the size of the tensor, as rates do not.
 ///
 /// ```
@@ -42,12 +55,28 @@ use crate::thresholds::poses::OPEN;
 /// ```
 ///
 /// # Errors
-/// Too few attitudes; half a turn from one to the next; no rotation; attitudes that no free motion follows, or that follow one the other way
+/// Too few attitudes; half a turn from one to the next; no rotation; attitudes that no motion follows, or that follow one the other way
 /// round; a direction that the motion does not tell; rates beside them of another size or hand; what [`fit`](crate::fit) refuses of a tensor
 /// that is not determined, of limits and of priors.
 pub fn fit_poses(poses: &Poses, settings: &Settings) -> Result<Estimate, FitError> {
     settings.check()?;
-    only_of_rates(settings)?;
+    only_of_rates(poses, settings)?;
+    if needs_smoother(settings) {
+        return under_torques(poses, settings);
+    }
+    match by_exact_motion(poses, settings) {
+        Err(FitError::Poses(fault @ PoseFault::NotFree { .. })) if !poses.has_rates() => {
+            under_torques(poses, settings).map_err(|error| match error {
+                FitError::Poses(PoseFault::NotFree { .. }) => fault.into(),
+                other => other,
+            })
+        }
+        other => other,
+    }
+}
+
+/// The fit by the closed form of the motion.
+fn by_exact_motion(poses: &Poses, settings: &Settings) -> Result<Estimate, FitError> {
     let as_read = Free::new(poses, settings);
     if poses.direction_is_open() {
         return told_by_motion(poses, settings, as_read);
@@ -108,23 +137,111 @@ fn is_steady(free: &Free) -> bool {
     free.steady.is_some()
 }
 
-/// The report on a motion that is free, or that is said to be.
+/// The report on a motion that is free, or that drag or a small constant torque changes.
 fn finished(poses: &Poses, settings: &Settings, free: &Free, told: Told) -> Result<Estimate, FitError> {
-    if !free.is_explained(settings) && settings.torque == TorqueModel::Auto {
-        let noise = settings.attitude_noise.or(free.local_noise);
-        let (residual, turn) = (free.followed.levels.attitude, free.largest_turn);
+    let may_be_driven = !poses.has_rates() || settings.torque == TorqueModel::Auto;
+    let is_alone = !poses.has_rates() && settings.torque_noise == TorqueNoise::Fitted;
+    let is_explained = free.is_explained(settings) && !(is_alone && walks(settings, free));
+    if !is_explained && may_be_driven {
+        let noise = settings.attitude_noise.or(free.read.local_noise);
+        let (residual, turn) = (free.followed.levels.attitude, free.read.largest_turn);
         return Err(PoseFault::NotFree { residual, noise, turn }.into());
     }
     report(poses.repeated(), settings, free, told)
 }
 
+/// Whether a torque is asked for of which there is no closed form.
+fn needs_smoother(settings: &Settings) -> bool {
+    let is_other = matches!(settings.torque, TorqueModel::Drag3 | TorqueModel::Quadratic);
+    is_other || matches!(settings.torque_noise, TorqueNoise::Given(_))
+}
+
+/// What is known of the noise, in this unit of the rates.
+fn noise_of(settings: &Settings, unit: f64) -> Noise {
+    let torque = match settings.torque_noise {
+        TorqueNoise::Given(density) => TorqueNoise::Given(density / (unit * unit * unit)),
+        other => other,
+    };
+    Noise { attitude: settings.attitude_noise, torque }
+}
+
+/// Whether torque noise about a motion explains the attitudes better. Where it is small it is left among their noise, and the tensor is off.
+fn walks(settings: &Settings, free: &Free) -> bool {
+    let Followed { model, tracks, .. } = &free.followed;
+    let path = |(track, start): (&Track, &Start)| {
+        let motion = model.motion(start)?;
+        let at = |t: &f64| motion.at(*t).map(|at| Start { attitude: at.attitude, rate: at.rate });
+        track.times.iter().map(at).collect::<Option<Vec<Start>>>()
+    };
+    let (columns, values) = match (model.drag, &free.alternatives) {
+        (Some(drag), _) => (torque_columns(TorqueModel::Drag), vec![drag]),
+        (None, Some(found)) if free.torque == Acting::Constant => {
+            (torque_columns(TorqueModel::Constant), found.constant.values.clone())
+        }
+        _ => (Vec::new(), Vec::new()),
+    };
+    let at = Unknowns { x: model.x, c: values };
+    let paths = tracks.iter().zip(&model.starts).map(path).collect::<Option<Vec<_>>>();
+    let gain = paths.and_then(|paths| {
+        smoothed::gain_of_noise(tracks, at, &columns, paths, noise_of(settings, free.read.unit))
+    });
+    gain.is_some_and(|gain| gain > WALKS)
+}
+
+/// The fit by filter and smoother, of the direction that is more likely.
+fn under_torques(poses: &Poses, settings: &Settings) -> Result<Estimate, FitError> {
+    let follow = |poses: &Poses| {
+        let Begun { tracks, first, read, .. } = Begun::new(poses, settings)?;
+        let not_followed = PoseFault::NotFree { residual: 1.0, noise: None, turn: read.largest_turn };
+        let noise = noise_of(settings, read.unit);
+        let found = smoothed::first(&tracks, first, &[], noise).ok_or(not_followed)?;
+        Ok::<(Found, Read), FitError>((found, read))
+    };
+    let follows = |found: &Found| found.is_still && found.unexplained() <= DRIVEN;
+    // also where the direction is stated: torque noise may make up for a wrong one
+    let (as_read, inverse) = (follow(poses), follow(&poses.inverse()));
+    let likelihood = |found: &Result<(Found, Read), FitError>| {
+        found.as_ref().map_or(f64::NEG_INFINITY, |(found, _)| found.likelihood)
+    };
+    let gain = likelihood(&as_read) - likelihood(&inverse);
+    let moments = |found: &Result<(Found, Read), FitError>| {
+        found.as_ref().map_or([0.0; 3], |(found, _)| eigen(tensor(&found.at.x)).0.into())
+    };
+    let told = match (poses.direction_is_open(), gain) {
+        (true, gain) if gain.abs() <= OPEN => {
+            return Err(PoseFault::Direction {
+                as_read: moments(&as_read),
+                inverse: moments(&inverse),
+                gain,
+            }
+            .into());
+        }
+        (true, gain) => Told { is_inverse: gain < 0.0, gain: Some(gain.abs()) },
+        (false, gain) if gain < -OPEN && inverse.as_ref().is_ok_and(|(found, _)| follows(found)) => {
+            return Err(PoseFault::Inverted { inverse: moments(&inverse), gain: -gain }.into());
+        }
+        (false, _) => Told { is_inverse: false, gain: None },
+    };
+    let (none, read) = if told.is_inverse { inverse? } else { as_read? };
+    let not_free = |found: &Found| PoseFault::NotFree {
+        residual: found.variance.sqrt(),
+        noise: settings.attitude_noise.or(read.local_noise),
+        turn: read.largest_turn,
+    };
+    let residual = not_free(&none);
+    let chosen = choose(none, settings.torque, noise_of(settings, read.unit)).ok_or(residual)?;
+    if !follows(&chosen.found) {
+        return Err(not_free(&chosen.found).into());
+    }
+    smoothed_report(poses.repeated(), settings, &read, &chosen, told)
+}
+
 /// Refuses settings that have no meaning here.
-fn only_of_rates(settings: &Settings) -> Result<(), FitError> {
+fn only_of_rates(poses: &Poses, settings: &Settings) -> Result<(), FitError> {
     let sensor = settings.sensor.named().into_iter();
     let others =
         [("the radius of test functions", settings.radius), ("the quantum of the rates", settings.quantum)];
-    let is_other = matches!(settings.torque, TorqueModel::Drag3 | TorqueModel::Quadratic);
-    if is_other || matches!(settings.torque_noise, TorqueNoise::Given(_)) {
+    if needs_smoother(settings) && poses.has_rates() {
         return Err(PoseFault::Torque.into());
     }
     let given = others.into_iter().chain(sensor).find(|(_, value)| value.is_some());

@@ -21,6 +21,34 @@ use crate::settings::Settings;
 use crate::thresholds::noise::{DEVIATIONS, LEAST};
 use crate::thresholds::poses::{COARSE, FEWEST, HALF_TURN, MOVING, SAME_SIZE, STILL};
 
+/// What is known of the samples before a motion is.
+#[derive(Clone, Debug)]
+pub(crate) struct Read {
+    /// Unit of rates and inverse of that of times, rad/s.
+    pub(crate) unit: f64,
+    /// The segments that were long enough, each with the time of its middle, s.
+    pub(crate) used: Vec<(usize, f64)>,
+    /// What neighbouring attitudes say of the noise, where the body turns little between them, rad.
+    pub(crate) local_noise: Option<f64>,
+    /// Largest turn from one attitude to the next, rad.
+    pub(crate) largest_turn: f64,
+    /// Samples that jump.
+    pub(crate) jumps: usize,
+    pub(crate) has_rates: bool,
+}
+
+/// Samples in their units, and where the search for a motion begins.
+pub(crate) struct Begun {
+    pub(crate) tracks: Vec<Track>,
+    /// A first tensor, in the axes of the rates where there are any.
+    pub(crate) first: Coordinates,
+    /// Takes coordinates along the body axes of the attitudes to those.
+    turn: Quat<f64>,
+    /// Standard deviation of a component of an attitude, rad.
+    noise: f64,
+    pub(crate) read: Read,
+}
+
 /// The motion of one body through all segments, free or slowed by drag.
 pub(crate) struct Free {
     pub(crate) followed: Followed,
@@ -33,25 +61,15 @@ pub(crate) struct Free {
     pub(crate) models: Vec<Weighed>,
     /// What a torque or moving axes would bring; `None` where the samples do not determine the model.
     pub(crate) alternatives: Option<Alternatives>,
-    /// Unit of rates and inverse of that of times, rad/s.
-    pub(crate) unit: f64,
-    /// The segments that were long enough, each with the time of its middle, s.
-    pub(crate) used: Vec<(usize, f64)>,
-    /// What neighbouring attitudes say of the noise, where the body turns little between them, rad.
-    pub(crate) local_noise: Option<f64>,
-    /// Largest turn from one attitude to the next, rad.
-    pub(crate) largest_turn: f64,
-    /// Samples that jump.
-    pub(crate) jumps: usize,
-    pub(crate) has_rates: bool,
+    pub(crate) read: Read,
     /// The information on the tensor at the steady spins that explain the samples nearly as well, if they do: a wobble within the noise
     /// would pass for one that tells the tensor.
     pub(crate) steady: Option<Form>,
 }
 
-impl Free {
-    /// The free motion nearest to `poses`.
-    pub(crate) fn new(poses: &Poses, settings: &Settings) -> Result<Free, FitError> {
+impl Begun {
+    /// What `poses` are, and a first tensor.
+    pub(crate) fn new(poses: &Poses, settings: &Settings) -> Result<Begun, FitError> {
         let Looked { used, stretches, rates, largest_turn, jumps } = looked_at(poses, settings)?;
         // the closed form itself is not without rounding
         let local_noise = local::noise(&stretches).unwrap_or(0.0).max(LEAST.sqrt());
@@ -67,36 +85,31 @@ impl Free {
         };
         let alignment = alignment_of(&nodes, &stretches, &rates, width)?;
         let turn = alignment.map_or(Quat::identity(), |alignment| alignment.turn);
-        let tracks: Vec<Track> =
-            stretches.iter().zip(&rates).map(|(s, rates)| track(s, rates, unit)).collect();
+        let tracks = stretches.iter().zip(&rates).map(|(s, rates)| track(s, rates, unit)).collect();
         let scaled: Vec<Vec<Node>> =
             nodes.iter().map(|nodes| nodes.iter().map(|n| in_units(n, unit)).collect()).collect();
         let first = tensor_of(&scaled, noise * noise).unwrap_or_else(Coordinates::zeros);
-        let levels = Levels { attitude: noise, rate: 0.0 };
-        let not_free = |residual| PoseFault::NotFree { residual, noise: Some(noise), turn: largest_turn };
         let first = turned(&first, &turn);
+        // a motion that moves far between neighbours is left among their noise
+        let local_noise = (largest_turn <= COARSE).then_some(local_noise);
+        let read = Read { unit, used, local_noise, largest_turn, jumps, has_rates: poses.has_rates() };
+        Ok(Begun { tracks, first, turn, noise, read })
+    }
+}
+
+impl Free {
+    /// The free motion nearest to `poses`.
+    pub(crate) fn new(poses: &Poses, settings: &Settings) -> Result<Free, FitError> {
+        let Begun { tracks, first, turn, noise, read } = Begun::new(poses, settings)?;
+        let levels = Levels { attitude: noise, rate: 0.0 };
+        let turn_between = read.largest_turn;
+        let not_free = |residual| PoseFault::NotFree { residual, noise: Some(noise), turn: turn_between };
         let moved = |drag| Some(Moved::new(follow(&tracks, first, turn, levels, drag)?));
         let Found { moved, torque, gain, without, models } =
             with_torque(settings.torque, moved).ok_or_else(|| not_free(1.0))?;
         let Moved { followed, alternatives } = moved;
         let steady = steady_within_noise(&followed);
-        // a motion that moves far between neighbours is left among their noise
-        let is_fine = largest_turn <= COARSE;
-        Ok(Free {
-            followed,
-            torque,
-            gain,
-            without,
-            models,
-            alternatives,
-            unit,
-            used,
-            local_noise: is_fine.then_some(local_noise),
-            largest_turn,
-            jumps,
-            has_rates: poses.has_rates(),
-            steady,
-        })
+        Ok(Free { followed, torque, gain, without, models, alternatives, read, steady })
     }
 
     /// Mean square of what is left of the attitudes, or of rates alone, over their noise, where that is known.
@@ -104,8 +117,8 @@ impl Free {
         let levels = self.followed.levels;
         let has_attitudes = self.followed.tracks.iter().any(Track::has_attitudes);
         let (left, known) = match has_attitudes {
-            true => (levels.attitude, settings.attitude_noise.or(self.local_noise)),
-            false => (levels.rate, settings.noise.map(|noise| noise / self.unit)),
+            true => (levels.attitude, settings.attitude_noise.or(self.read.local_noise)),
+            false => (levels.rate, settings.noise.map(|noise| noise / self.read.unit)),
         };
         let ratio = left / known.filter(|noise| *noise > 0.0)?;
         Some(ratio * ratio)

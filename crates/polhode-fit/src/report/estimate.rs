@@ -23,6 +23,8 @@ pub enum Method {
     ExactMotion,
     /// Maximum likelihood on the exact motion of the body with wheels of constant momentum, next to the estimate of the weak form.
     ExactMotionWithWheels,
+    /// Maximum likelihood of attitudes under torques, by a Kalman filter and smoother.
+    Smoother,
 }
 
 /// Whitened residuals of one segment: standard normal where model and noise are right.

@@ -68,9 +68,10 @@ pub(crate) fn report(
     free: &Free,
     told: Told,
 ) -> Result<Estimate, FitError> {
-    let information = information(settings, free)?;
+    let (information, rates) = (information(settings, free)?, fitted_rates(free));
     let x = free.followed.model.x + information.moved;
-    let identifiability = identify(free, &free.steady.unwrap_or(information.tensor));
+    let identifiability =
+        identify(&rates, &free.followed.model.x, &free.steady.unwrap_or(information.tensor));
     let prior = settings.prior.as_ref().map(|prior| consistent(prior, settings)).transpose()?;
     if !identifiability.complete() {
         return Err(FitError::Unidentifiable(Box::new(identifiability)));
@@ -101,8 +102,14 @@ pub(crate) fn report(
     let Answer { shape, moments, axes, v } = Answer::new(&answer.x)?;
     let (sigma_principal, sigma_axes) = sigmas(&on_face, &v, &moments);
     let ratios = ratios(&on_face, &v, &moments);
-    let (inertia, inertia_covariance) =
-        absolute(settings, free, &shape.tensor(), &(on_face * on_face.transpose()), &answer.x)?;
+    let (inertia, inertia_covariance) = absolute(
+        settings,
+        &rates,
+        free.read.unit,
+        &shape.tensor(),
+        &(on_face * on_face.transpose()),
+        &answer.x,
+    )?;
     let residuals = residuals(free, information.levels)?;
     let entries = entries_of_coordinates();
     let bound = information.curvature.cholesky().map(|c| c.inverse());
@@ -114,7 +121,7 @@ pub(crate) fn report(
     let count: f64 = free.followed.dof.iter().sum();
     let pull = answer.pull;
     let drag = free.alternatives.as_ref().and_then(|found| found.drag.as_ref());
-    let drag = drag.map(|drag| (drag.values[0] * free.unit, drag.sigmas[0] * free.unit));
+    let drag = drag.map(|drag| (drag.values[0] * free.read.unit, drag.sigmas[0] * free.read.unit));
     let slowed = information.torques.first().filter(|_| free.torque == Acting::Drag);
     let drag = slowed.map(|drag| (drag.value, drag.sigma)).or(drag);
     let mut estimate = Estimate {
@@ -131,12 +138,12 @@ pub(crate) fn report(
         inertia,
         inertia_covariance,
         quanta: [0.0; 3],
-        noise_sigma: if free.has_rates { information.levels.rate * free.unit } else { 0.0 },
+        noise_sigma: if free.read.has_rates { information.levels.rate * free.read.unit } else { 0.0 },
         chi2_per_dof: excess + pull * pull / f64::max(count, 1.0),
         pull,
         dof: count as usize,
         samples: free.followed.tracks.iter().map(|t| t.used.iter().filter(|used| **used).count()).sum(),
-        segments: free.used.len(),
+        segments: free.read.used.len(),
         method: Method::ExactMotion,
         radius: None,
         identifiability,
@@ -192,7 +199,7 @@ fn torque(free: &Free, coefficients: Vec<Nuisance>, is_chosen: bool) -> FittedTo
 /// At the noise that was given, or as much as is left where that is more.
 fn information(settings: &Settings, free: &Free) -> Result<Information, FitError> {
     let own = free.followed.levels;
-    let rate = settings.noise.map_or(own.rate, |noise| own.rate.max(noise / free.unit));
+    let rate = settings.noise.map_or(own.rate, |noise| own.rate.max(noise / free.read.unit));
     let levels = Levels {
         attitude: settings.attitude_noise.map_or(own.attitude, |noise| own.attitude.max(noise)),
         rate,
@@ -213,14 +220,15 @@ fn information(settings: &Settings, free: &Free) -> Result<Information, FitError
         tensor = covariance.cholesky().ok_or_else(singular)?.inverse();
         let each =
             torque_columns(TorqueModel::Constant).into_iter().zip(&constant.values).zip(&constant.sigmas);
-        torques
-            .extend(each.map(|((column, value), sigma)| Nuisance::new(&column, *value, *sigma, free.unit)));
+        torques.extend(
+            each.map(|((column, value), sigma)| Nuisance::new(&column, *value, *sigma, free.read.unit)),
+        );
     }
     if let Some(drag) = free.followed.model.drag {
         let sigma =
             all.information.cholesky().map_or(f64::MAX, |c| c.inverse()[(COMMON - 1, COMMON - 1)].sqrt());
         let each = torque_columns(TorqueModel::Drag).into_iter();
-        torques.extend(each.map(|column| Nuisance::new(&column, drag, sigma, free.unit)));
+        torques.extend(each.map(|column| Nuisance::new(&column, drag, sigma, free.read.unit)));
     }
     let curvature = tensor;
     // samples that leave a number open have no covariance, and are refused for it
@@ -252,7 +260,7 @@ fn holds_at(free: &Free, answer: &Nearest) -> bool {
 }
 
 /// Which of the five numbers the information determines.
-fn identify(free: &Free, information: &Form) -> Identifiability {
+pub(super) fn identify(stretches: &[Stretch], x: &Coordinates, information: &Form) -> Identifiability {
     let (values, directions) = eigen(*information);
     let most = values[4];
     // ascending values, and what is rounding tells nothing
@@ -262,10 +270,10 @@ fn identify(free: &Free, information: &Form) -> Identifiability {
     });
     let descending = Form::from_fn(|i, k| directions[(i, 4 - k)]);
     let mut scatter = Matrix3::zeros();
-    for stretch in fitted_rates(free) {
+    for stretch in stretches {
         stretch.rates.iter().for_each(|w| scatter += w * w.transpose());
     }
-    Identifiability::new(&(singular, descending), &scatter, &tensor(&free.followed.model.x))
+    Identifiability::new(&(singular, descending), &scatter, &tensor(x))
 }
 
 /// The rates of the motion at the samples, axes of the tensor, in units of the fit.
@@ -280,10 +288,11 @@ fn fitted_rates(free: &Free) -> Vec<Stretch> {
     each.collect()
 }
 
-/// The absolute tensor, where something gives its size, and its covariance.
-fn absolute(
+/// The absolute tensor by rates in this unit, where something gives its size, and its covariance.
+pub(super) fn absolute(
     settings: &Settings,
-    free: &Free,
+    rates: &[Stretch],
+    unit: f64,
     j: &Matrix3<f64>,
     covariance: &Form,
     x: &Coordinates,
@@ -292,7 +301,7 @@ fn absolute(
     let Some(known) = settings.known else {
         return prior.map_or(Ok((None, None)), |prior| by_prior(j, &prior, covariance, x));
     };
-    let scale = scale_of(known, &fitted_rates(free), free.unit, j, 0.0);
+    let scale = scale_of(known, rates, unit, j, 0.0);
     let (inertia, covariance) = scale.sized(known, prior.as_ref(), j, covariance, 1.0, None)?;
     Ok((Some(inertia), Some(covariance)))
 }
@@ -300,13 +309,13 @@ fn absolute(
 /// Residuals of attitudes, or of rates where there are no attitudes, in standard deviations.
 fn residuals(free: &Free, levels: Levels) -> Result<Vec<Residuals>, FitError> {
     let model = &free.followed.model;
-    let each = free.followed.tracks.iter().zip(&model.starts).zip(&free.used);
+    let each = free.followed.tracks.iter().zip(&model.starts).zip(&free.read.used);
     each.map(|((track, start), &(segment, middle))| {
         let shown = if track.has_attitudes() { Kind::Attitude } else { Kind::Rate };
         let (mut times, mut values) = (Vec::new(), Vec::new());
         let seen = track.visit(model, start, f64::INFINITY, |left| {
             if left.kind == shown {
-                times.push(middle + track.times[left.sample] / free.unit);
+                times.push(middle + track.times[left.sample] / free.read.unit);
                 values.push((left.residual / levels.of(left.kind)).into());
             }
         });
@@ -322,7 +331,7 @@ fn residuals(free: &Free, levels: Levels) -> Result<Vec<Residuals>, FitError> {
 fn summaries(free: &Free, information: &Information) -> Vec<SegmentSummary> {
     let total = information.tensor;
     let inverse = total.cholesky().map(|c| c.inverse());
-    let each = free.used.iter().enumerate().map(|(k, &(segment, _))| {
+    let each = free.read.used.iter().enumerate().map(|(k, &(segment, _))| {
         let own = Reduced::new(&information.sums[k..=k], None, 0.0).and_then(|own| {
             let gradient = own.gradient_of_tensor()?;
             Some((own.of_tensor()?, gradient))
@@ -336,7 +345,7 @@ fn summaries(free: &Free, information: &Information) -> Vec<SegmentSummary> {
         SegmentSummary {
             segment,
             samples: track.used.iter().filter(|used| **used).count(),
-            noise_sigma: information.levels.rate * free.unit,
+            noise_sigma: information.levels.rate * free.read.unit,
             torque_noise: 0.0,
             weight,
             shift: shift.unwrap_or(0.0),
@@ -362,13 +371,13 @@ fn attitudes(
         noise_sigma: information.levels.attitude,
         noise_is_given: settings.attitude_noise.is_some(),
         residual: free.followed.levels.attitude,
-        local_noise: free.local_noise,
+        local_noise: free.read.local_noise,
         is_inverse: told.is_inverse,
         direction_gain: told.gain,
-        largest_turn: free.largest_turn,
-        left_out: free.jumps + out.sum::<usize>(),
+        largest_turn: free.read.largest_turn,
+        left_out: free.read.jumps + out.sum::<usize>(),
         repeated,
-        alignment: free.has_rates.then(|| alignment(free, information)),
+        alignment: free.read.has_rates.then(|| alignment(free, information)),
     }
 }
 

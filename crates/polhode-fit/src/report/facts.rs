@@ -20,6 +20,7 @@ use crate::physical::nearest::Normal;
 use crate::physical::prior::Prior;
 use crate::report::answer::{Answer, of_entries, ratios, shape_of, sigmas};
 use crate::report::deviations::{Deviations, deviations};
+use crate::report::differing::Differing;
 use crate::report::estimate::{Estimate, Method, Residuals};
 use crate::report::identifiability::Identifiability;
 use crate::report::mirror::{mirror_sigmas, mirrored};
@@ -51,6 +52,8 @@ pub(crate) struct Facts<'a> {
     pub(crate) misfit: f64,
     /// How far the parts of the record contradict each other.
     pub(crate) scatter: Option<Scatter>,
+    /// The unknowns beside the tensor in which they differ.
+    pub(crate) differing: Option<&'a Differing>,
     pub(crate) spikes: Vec<Spike>,
     /// Unit of the column of wheel momenta and torques, kg m².
     pub(crate) input: Option<f64>,
@@ -156,7 +159,9 @@ impl Facts<'_> {
             warnings: Vec::new(),
             shape,
         };
-        let grounds = self.grounds(open, suspect);
+        let is_free = free_body && !weak.has_torque_noise();
+        let left = motions.as_ref().map(|motions| motions.left).filter(|_| is_free);
+        let grounds = self.grounds(open, suspect, left);
         estimate.warnings = warnings(&estimate, &grounds);
         Ok(estimate)
     }
@@ -173,8 +178,14 @@ impl Facts<'_> {
     }
 
     /// What warnings are drawn from.
-    fn grounds<'b>(&'b self, open: Option<&'b Others>, suspect: Option<Suspect>) -> Grounds<'b> {
+    fn grounds<'b>(
+        &'b self,
+        open: Option<&'b Others>,
+        suspect: Option<Suspect>,
+        left: Option<(f64, f64)>,
+    ) -> Grounds<'b> {
         Grounds {
+            left,
             record: self.record,
             weak: &self.chosen.weak,
             misfit: self.misfit,
@@ -182,6 +193,7 @@ impl Facts<'_> {
             open,
             suspect,
             scatter: self.scatter,
+            differing: self.differing,
             found: self.settings.torque == TorqueModel::Auto,
             noise_found: self.settings.torque_noise == TorqueNoise::Fitted,
             driven: self.input.is_some(),
@@ -251,7 +263,7 @@ impl Facts<'_> {
     /// The coefficients of the torque, and what was estimated of the sensor.
     fn nuisances(&self, at: &Unknowns, held: &[(usize, f64)]) -> (FittedTorque, Vec<Nuisance>) {
         let variance = self.variance * self.excess();
-        let all = nuisances(&self.chosen.weak, &at.c, variance, self.rms, held);
+        let all = nuisances(&self.chosen.weak, &at.c, variance, self.rms, held, self.differing);
         let (torques, sensor) = all
             .into_iter()
             .filter(|n| n.column.class() != Class::Input)

@@ -78,7 +78,7 @@ fn scattered(parts: &[(Form, Coordinates)], variance: f64) -> Option<Scatter> {
 /// The value that chi squared exceeds as rarely as a normal deviate exceeds `z` standard deviations.
 ///
 /// Source: E. B. Wilson and M. M. Hilferty, Proc. Natl. Acad. Sci. 17 (1931) 684.
-fn quantile(dof: f64, z: f64) -> f64 {
+pub(crate) fn quantile(dof: f64, z: f64) -> f64 {
     let variance = 2.0 / (9.0 * dof);
     let root = 1.0 - variance + z * variance.sqrt();
     dof * root * root * root
@@ -104,17 +104,22 @@ fn solved(weak: &WeakEstimate, variance: f64, shares: [f64; 2]) -> Option<(Coord
 /// The equations between two shares of them.
 fn stacked(weak: &WeakEstimate, variance: f64, shares: [f64; 2]) -> Option<Stacked> {
     let stacked = weak.stacked.as_ref()?;
+    Some(Stacked::new(&rows_between(weak, shares), &weak.columns, &stacked.origin, variance.sqrt()))
+}
+
+/// The rows between two shares of the equations.
+pub(super) fn rows_between(weak: &WeakEstimate, shares: [f64; 2]) -> Vec<&[f64]> {
     let width = 3 * (weak.columns.len() + 6);
     let equations: usize = weak.parts.iter().map(|part| part.rows.len() / width).sum();
     let [from, to] = shares.map(|share| (share * equations as f64) as usize);
-    let (mut rows, mut first) = (Vec::new(), 0);
-    for part in &weak.parts {
+    let mut first = 0;
+    let each = weak.parts.iter().map(|part| {
         let last = first + part.rows.len() / width;
         let [from, to] = [from, to].map(|place| width * (place.clamp(first, last) - first));
-        rows.push(&part.rows[from..to]);
         first = last;
-    }
-    Some(Stacked::new(&rows, &weak.columns, &stacked.origin, variance.sqrt()))
+        &part.rows[from..to]
+    });
+    each.collect()
 }
 
 #[cfg(test)]

@@ -1,6 +1,8 @@
 //! Whether the motion is torque-free, and the noise white.
 
-use crate::thresholds::trend::SIGNIFICANT;
+use crate::report::estimate::Residuals;
+use crate::report::parts::quantile;
+use crate::thresholds::trend::{MEMORY, SIGNIFICANT};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::signal::stretch::Stretch;
@@ -49,6 +51,38 @@ impl Whiteness {
     pub fn significant(self) -> bool {
         self.correlation.abs() > SIGNIFICANT * self.sigma
     }
+}
+
+/// Correlations of whitened residuals with those within one turn of the body after them: what acts on the body is no white noise.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Memory {
+    /// Sum of their squares in standard deviations, each component with each: χ² where the noise is white and the model right.
+    pub chi2: f64,
+    /// Its degrees of freedom.
+    pub dof: usize,
+}
+
+/// The memory of residuals, where it is more than chance brings.
+///
+/// Source: J. R. M. Hosking, J. Am. Stat. Assoc. 75 (1980) 602.
+pub(crate) fn memory(residuals: &[Residuals], lags: usize) -> Option<Memory> {
+    let squares: f64 = residuals.iter().flat_map(|r| r.values.as_flattened()).map(|v| v * v).sum();
+    let count = residuals.iter().map(|r| r.values.len()).sum::<usize>();
+    let square = squares / (3 * count) as f64;
+    let mut chi2 = 0.0;
+    for lag in 1..=lags {
+        let (mut product, mut pairs) = (Matrix3::zeros(), 0.0);
+        for r in residuals {
+            for (a, b) in r.values.iter().zip(r.values.iter().skip(lag)) {
+                product += Vector3::from(*a) * Vector3::from(*b).transpose();
+                pairs += 1.0;
+            }
+        }
+        chi2 += product.norm_squared() / (square * square * f64::max(pairs, 1.0));
+    }
+    let found = Memory { chi2, dof: 9 * lags };
+    (lags > 0 && chi2 > quantile(found.dof as f64, MEMORY)).then_some(found)
 }
 
 /// Trends of |J ω| and of ω·J ω: slopes of their squares against time about each stretch's own mean. `torque` is the

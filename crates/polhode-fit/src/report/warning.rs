@@ -6,7 +6,7 @@ use crate::error::per_cent;
 use crate::physical::constraint::ActiveConstraint;
 use crate::report::nuisance::FittedTorque;
 use crate::report::parts::{Halves, Scatter};
-use crate::report::torque_free::{InvariantTrend, Whiteness};
+use crate::report::torque_free::{InvariantTrend, Memory, Whiteness};
 use crate::thresholds::likelihood::LINEAR;
 use crate::units::product::{UnitProduct, alternatives};
 use polhode::num::Shown;
@@ -81,6 +81,15 @@ pub enum Warning {
     },
     /// The residuals are not white.
     Correlated(Whiteness),
+    /// The residuals within one turn of the body are correlated.
+    Memory(Memory),
+    /// The free motion of the tensor leaves more of the samples than their noise, and the equations do not see it.
+    Vibration {
+        /// Root mean square of what it leaves over the noise.
+        times: f64,
+        /// Noise of one component, rad/s.
+        noise: f64,
+    },
     /// The angular momentum |J ω| changes.
     MomentumTrend(InvariantTrend),
     /// The energy ω·J ω changes.
@@ -111,6 +120,12 @@ pub enum Warning {
     Halves(Halves),
     /// The parts of the record scatter by more than their noise; the deviations are enlarged accordingly.
     Scatter(Scatter),
+    /// The parts of the record differ in unknowns beside the tensor by more than their noise; the deviations of these, and of what is
+    /// correlated with them, are enlarged accordingly.
+    Differing {
+        /// Their names, each with the factor by which its deviation is enlarged.
+        unknowns: Vec<(&'static str, f64)>,
+    },
     /// The residuals of one segment exceed those of the median segment.
     NoisySegment {
         /// Which segment of the record, from 0.
@@ -237,6 +252,16 @@ impl fmt::Display for Warning {
                 per_cent(*other),
                 per_cent(*unexplained)
             ),
+            Self::Memory(Memory { chi2, dof }) => write!(
+                f,
+                "residuals within one turn of the body are correlated (chi squared {chi2:.0} of {dof}): what acts is no white noise, as of a \
+                 magnet, a fluid or a part that moves, or the sensor has errors; the deviations leave that out"
+            ),
+            Self::Vibration { times, noise } => write!(
+                f,
+                "the free motion of this tensor leaves {times:.2} times the noise of {noise:.3e} rad/s of the samples: a part of the body \
+                 moves, it vibrates, or the sensor has errors"
+            ),
             Self::Correlated(Whiteness { correlation, sigma }) => write!(
                 f,
                 "neighbouring residuals are correlated by {correlation:.2} +- {sigma:.2}: the noise is not white or the \
@@ -277,6 +302,17 @@ impl fmt::Display for Warning {
                  a torque or an error of the sensor that is no part of the fit, or a tensor that changes; deviations are enlarged by {:.1}",
                 scatter.excess().sqrt()
             ),
+            Self::Differing { unknowns } => {
+                f.write_str("the parts of the record differ by more than their noise in ")?;
+                for (k, (name, times)) in unknowns.iter().enumerate() {
+                    let comma = if k > 0 { ", " } else { "" };
+                    write!(f, "{comma}{name} (deviation enlarged by {times:.1})")?;
+                }
+                f.write_str(
+                    ": torques of another form than those of the fit, or a sensor that changes; what is correlated with these is less \
+                     certain as well",
+                )
+            }
             Self::NoisySegment { segment, start, times } => write!(
                 f,
                 "segment {} (from {start} s) has {times:.1} times the residuals of the median segment: check it",

@@ -7,10 +7,11 @@ use crate::thresholds::warnings::{APART, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, 
 use polhode::record::Record;
 
 use crate::report::attitudes::AttitudeFit;
+use crate::report::differing::Differing;
 use crate::report::estimate::Estimate;
 use crate::report::parts::{Scatter, halves};
 use crate::report::sensor::Suspect;
-use crate::report::torque_free::InvariantTrend;
+use crate::report::torque_free::{InvariantTrend, memory};
 use crate::report::warning::Warning;
 use crate::settings::torque::TorqueModel;
 use crate::solve::weak_estimate::WeakEstimate;
@@ -28,14 +29,31 @@ pub(super) struct Grounds<'a> {
     pub(super) open: Option<&'a Others>,
     /// Errors of the sensor that explain the record better.
     pub(super) suspect: Option<Suspect>,
+    /// What the free motion leaves of the samples, of a free body: mean square of a component over that of the noise, and the number of
+    /// components.
+    pub(super) left: Option<(f64, f64)>,
     /// How far the parts of the record contradict each other.
     pub(super) scatter: Option<Scatter>,
+    /// The unknowns beside the tensor in which they differ.
+    pub(super) differing: Option<&'a Differing>,
     /// Whether the fit has found the torque by itself.
     pub(super) found: bool,
     /// The same of torque noise.
     pub(super) noise_found: bool,
     /// Whether wheels or known torques act, which change |J ω| and ω·J ω.
     pub(super) driven: bool,
+}
+
+impl Grounds<'_> {
+    /// Equations within one turn of the body, at most a quarter of those of the longest segment.
+    fn lags(&self, e: &Estimate) -> usize {
+        let longest = e.residuals.iter().max_by_key(|r| r.times.len());
+        let Some((r, radius)) = longest.zip(e.radius) else { return 0 };
+        let [Some(first), Some(last)] = [r.times.first(), r.times.last()] else { return 0 };
+        let count = r.times.len();
+        let spacing = (last - first) / count.saturating_sub(1).max(1) as f64 * self.weak.radius / radius;
+        ((core::f64::consts::TAU / spacing) as usize).clamp(1, (count / 4).max(1))
+    }
 }
 
 /// What of the record, the residuals and the answer limits the use of `e`.
@@ -77,6 +95,11 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     if e.whiteness.significant() {
         list.push(Warning::Correlated(e.whiteness));
     }
+    list.extend(memory(&e.residuals, grounds.lags(e)).map(Warning::Memory));
+    // the noise itself is known from as many samples, less well
+    let surely = |components: f64| 1.0 + 2.0 * DEVIATIONS * (2.0 / components).sqrt();
+    let left = grounds.left.filter(|(left, components)| *left > surely(*components));
+    list.extend(left.map(|(left, _)| Warning::Vibration { times: left.sqrt(), noise: e.noise_sigma }));
     if driven {
         if e.inertia.is_none() {
             list.push(Warning::NoScale);
@@ -98,6 +121,8 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     }
     list.extend(halves(weak, grounds.variance * misfit.max(1.0)).map(Warning::Halves));
     list.extend(grounds.scatter.map(Warning::Scatter));
+    let named = grounds.differing.map(|found| found.named.clone()).filter(|named| !named.is_empty());
+    list.extend(named.map(|unknowns| Warning::Differing { unknowns }));
     let mut levels: Vec<f64> = e.residuals.iter().map(|r| r.mean_square).collect();
     levels.sort_by(f64::total_cmp);
     if let Some(&median) = levels.get(levels.len() / 2).filter(|_| levels.len() > 2) {
@@ -157,6 +182,13 @@ pub(super) fn of_likelihood(e: &Estimate, doubts: &Doubts) -> Vec<Warning> {
     }
     list.extend(of_answer(e));
     list
+}
+
+/// The same of attitudes under torques; `misfit` is what is left over the noise, where that is known, `density` that of torque noise.
+pub(super) fn of_smoothed(e: &Estimate, misfit: Option<f64>, density: f64) -> Vec<Warning> {
+    let doubts = Doubts { misfit, widened: None, constant: None };
+    let noise = (density > 0.0).then_some(Warning::TorqueNoise { density, unexplained: e.unexplained });
+    noise.into_iter().chain(of_likelihood(e, &doubts)).collect()
 }
 
 /// What of the answer itself limits its use, however it was found.

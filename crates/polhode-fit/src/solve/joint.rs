@@ -55,21 +55,28 @@ impl Joint {
         finite.then_some(Joint { kept, told: Normal { centre, root }, rest, own, shared, best })
     }
 
-    /// With the covariance of the tensor enlarged by `spread`.
-    pub(crate) fn widened(mut self, spread: &Form) -> Option<Joint> {
-        if *spread == Form::zeros() {
+    /// With the covariance of the kept columns and the tensor enlarged by M Mᵀ.
+    pub(crate) fn widened(mut self, more: &DMatrix<f64>) -> Option<Joint> {
+        if more.iter().all(|entry| *entry == 0.0) {
             return Some(self);
         }
-        let more = factor(spread);
-        // C + S = F Fᵀ with F = (R⁻¹, √S), and Fᵀ = Q T: a root of its inverse is T⁻ᵀ
+        // C + M Mᵀ = F Fᵀ with F = (R⁻¹, M), and Fᵀ = Q T: a root of its inverse is T⁻ᵀ
         let size = self.told.root.ncols();
-        let mut factors = DMatrix::zeros(size + 5, size);
+        let mut factors = DMatrix::zeros(size + more.ncols(), size);
         let own = self.told.root.clone().try_inverse()?;
         factors.view_mut((0, 0), (size, size)).copy_from(&own.transpose());
-        factors.view_mut((size, size - 5), (5, 5)).copy_from(&more.transpose());
+        factors.view_mut((size, 0), (more.ncols(), size)).copy_from(&more.transpose());
         let inverse = factors.qr().r().try_inverse()?;
         self.told.root = inverse.transpose().qr().r();
         self.told.root.iter().all(|v| v.is_finite()).then_some(self)
+    }
+
+    /// A factor of a covariance that the tensor alone has, as of the kept columns and the tensor.
+    pub(crate) fn of_tensor(&self, spread: &Form) -> DMatrix<f64> {
+        let size = self.told.root.ncols();
+        let mut more = DMatrix::zeros(size, 5);
+        more.view_mut((size - 5, 0), (5, 5)).copy_from(&factor(spread));
+        more
     }
 
     /// All unknowns where those that are kept are `others`, and the tensor is `x`.

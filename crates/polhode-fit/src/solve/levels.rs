@@ -106,7 +106,7 @@ impl Search<'_> {
 }
 
 /// Where a function with one minimum between `low` and `high` is least.
-fn golden(cost: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
+pub(crate) fn golden(cost: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     const SHARE: f64 = 0.618_033_988_749_894_8;
     let (mut a, mut b) = (high - SHARE * (high - low), low + SHARE * (high - low));
     let (mut at_a, mut at_b) = (cost(a), cost(b));
@@ -126,7 +126,7 @@ fn golden(cost: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
 
 /// One step of Newton's method towards the least of a function from `middle`, by no more than a decade: from one round to the next
 /// the minimum itself moves.
-fn newton(cost: impl Fn(f64) -> f64, middle: f64) -> f64 {
+pub(crate) fn newton(cost: impl Fn(f64) -> f64, middle: f64) -> f64 {
     let [below, least, above] = [-STEP, 0.0, STEP].map(|step| cost(middle + step));
     let (slope, curvature) = (below - above, below - 2.0 * least + above);
     let step = if curvature > 0.0 { STEP * (0.5 * slope / curvature) } else { slope };
@@ -135,7 +135,7 @@ fn newton(cost: impl Fn(f64) -> f64, middle: f64) -> f64 {
 
 /// The vertex of the parabola about `middle`, where that is a minimum: a golden section alone ends at one of a few places, and
 /// descents would go to and fro between two of them.
-fn vertex(cost: impl Fn(f64) -> f64, middle: f64) -> f64 {
+pub(crate) fn vertex(cost: impl Fn(f64) -> f64, middle: f64) -> f64 {
     let [below, least, above] = [-STEP, 0.0, STEP].map(|step| cost(middle + step));
     let (slope, curvature) = (below - above, below - 2.0 * least + above);
     if slope.is_finite() && curvature > 0.0 {

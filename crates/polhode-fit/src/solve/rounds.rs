@@ -190,7 +190,14 @@ impl<'a> Rounds<'a> {
 
     pub(crate) fn stack(&self, whitened: &[Whitened], variance: f64) -> Stacked {
         let rows: Vec<&[f64]> = whitened.iter().map(|w| w.rows.as_slice()).collect();
-        Stacked::new(&rows, self.columns, &self.at, variance.sqrt())
+        match self.at.x == Coordinates::zeros() {
+            true => Stacked::new(&rows, &self.columns_at_sphere(), &self.at, variance.sqrt()),
+            false => Stacked::new(&rows, self.columns, &self.at, variance.sqrt()),
+        }
+    }
+
+    fn columns_at_sphere(&self) -> Vec<Column> {
+        self.columns.iter().map(|column| column.at_sphere()).collect()
     }
 
     /// One round: by how many standard deviations it would move the tensor if it took its whole step, and the misfit of the
@@ -421,7 +428,7 @@ impl<'a> Rounds<'a> {
             all.push(whitened_rows(s, &raw, part, levels)?);
         }
         let rows: Vec<&[f64]> = all.iter().map(Vec::as_slice).collect();
-        Some(Stacked::new(&rows, self.columns, &origin, variance.sqrt()).squares_at(&origin.x))
+        Some(Stacked::new(&rows, &self.columns_at_sphere(), &origin, variance.sqrt()).squares_at(&origin.x))
     }
 
     /// R of motions that keep their mean rates, and D.

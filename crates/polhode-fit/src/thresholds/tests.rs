@@ -13,6 +13,8 @@ const NO_THRESHOLDS: &[&str] = &[
     "coordinates HALF_ROOT",
     "coordinates SIXTH_ROOT",
     "covariance BLOCKS",
+    "dynamics ALL",
+    "dynamics SHARED",
     "equations LOCAL",
     "equations OTHERS",
     "equations UNKNOWNS",

@@ -5,8 +5,8 @@ use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_fit::{Disturbances, Gyroscope, Record, Settings, TorqueModel, Warning, fit, simulate_with};
 
-use crate::measured::sampled;
 use crate::measured::torques::motion;
+use crate::measured::{random_rotation, sampled, turned};
 
 const SHAPE: [f64; 3] = [1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6];
 
@@ -140,4 +140,53 @@ fn every_model_of_the_torque_is_weighed() {
     // of a torque that was asked for, the deviations are its own
     let named = fit(&record, &Settings::default().with_torque(TorqueModel::Constant)).unwrap();
     assert!(!named.torque.is_chosen && named.models.len() == 5);
+}
+
+/// A torque that goes to and fro passes for torque noise, but its residuals remember it; white torque noise leaves none that do.
+#[test]
+fn torques_that_are_no_noise_are_named() {
+    let mut random = Random::new(645);
+    let times = sampled(50, 60);
+    for k in 0..4 {
+        let j = turned(SHAPE, &random_rotation(&mut random));
+        let (omega, along) = (random.normal_vector().normalize(), random.normal_vector().normalize());
+        let torque = |t: f64, _: &Vector3<f64>| along * (4e-3 * libm::sin(0.9 * t));
+        let rates = noisy(&motion(&j, omega, &times, &torque), 1e-2, &mut random);
+        let acting = Disturbances::default().with_torque_noise(2e-3);
+        let gyroscope = Gyroscope::default().with_noise(1e-2);
+        let body = Inertia::from_tensor(j).unwrap();
+        let white = simulate_with(&body, omega, &times, &acting, &gyroscope, &mut random).unwrap();
+        let named = |rates: &[Vector3<f64>]| {
+            let e = fit(&Record::from_samples(&times, rates).unwrap(), &Settings::default()).unwrap();
+            println!("{k}: {:?}", e.warnings.iter().map(ToString::to_string).collect::<Vec<_>>());
+            e.warnings.iter().any(|w| matches!(w, Warning::Memory(_)))
+        };
+        assert!(named(&rates) && !named(&white), "{k}");
+    }
+}
+
+/// Slow vibrations of the body that are no part of a free motion, and too weak for the equations.
+#[test]
+fn samples_that_the_free_motion_does_not_follow_are_named() {
+    let mut random = Random::new(646);
+    let times = sampled(100, 60);
+    let body = Inertia::from_moments(SHAPE).unwrap();
+    let gyroscope = Gyroscope::default().with_noise(1e-2);
+    for k in 0..4 {
+        let omega = random.normal_vector().normalize();
+        let free =
+            simulate_with(&body, omega, &times, &Disturbances::default(), &gyroscope, &mut random).unwrap();
+        let shaken = free.iter().zip(&times).map(|(w, t)| {
+            let phase = 9.0 * t;
+            w + Vector3::new(libm::sin(phase), libm::cos(phase), libm::sin(phase + 1.0)) * 8e-3
+        });
+        let shaken: Vec<Vector3<f64>> = shaken.collect();
+        let warnings = |rates: &[Vector3<f64>]| {
+            let settings = Settings::default();
+            fit(&Record::from_samples(&times, rates).unwrap(), &settings).unwrap().warnings
+        };
+        let (shaken, free) = (warnings(&shaken), warnings(&free));
+        println!("{k}: {:?}", shaken.iter().map(ToString::to_string).collect::<Vec<_>>());
+        assert!(!shaken.is_empty() && free.is_empty(), "{k}: {free:?}");
+    }
 }

@@ -20,6 +20,9 @@ pub(super) fn method(e: &Estimate) -> &'static str {
     match e.method {
         Method::ExactMotion => "maximum likelihood on the exact motion of the free body",
         Method::ExactMotionWithWheels => "maximum likelihood on the exact motion of the body with wheels",
+        Method::Smoother => {
+            "maximum likelihood by a Kalman filter and smoother about the motion under torques"
+        }
         _ => METHOD,
     }
 }

@@ -1,0 +1,106 @@
+//! Whether the parts of a record differ in what they say of an unknown beside the tensor.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::physical::coordinates::eigen;
+use crate::report::parts::{quantile, rows_between};
+use crate::solve::linearised::residuals;
+use crate::solve::stacked::Stacked;
+use crate::solve::weak_estimate::WeakEstimate;
+use crate::thresholds::warnings::{CUTS, DIFFERING, NAMED, SCATTERED};
+
+/// Unknowns in which the parts of a record differ by more than their noise.
+pub(crate) struct Differing {
+    /// What those are called in which they do so by far, each with the factor by which its standard deviation is enlarged.
+    pub(crate) named: Vec<(&'static str, f64)>,
+    /// Displacements of all columns and the tensor that enlarge their covariance, one deviation each.
+    added: Vec<DVector<f64>>,
+}
+
+/// The unknowns of an estimate in which its parts differ; `variance` is that of the noise with what it does not explain.
+///
+/// With residuals r and derivatives A of a part, H⁻¹ Aᵀ r is how far that part pulls the estimate, and the sum of squares of all pulls is
+/// its variance by the jackknife, whatever the noise is. If the noise is what it is taken for, a pull has the
+/// covariance H⁻¹ (h − h H⁻¹ h) H⁻¹ with h = Aᵀ A. Where the pulls on an unknown are larger than that by more than chance brings, its variance is
+/// enlarged by their ratio, and what is correlated with it follows. Of the tensor the axes of its ellipsoid are asked one by one.
+/// Segments are the parts where there are enough of them.
+///
+/// Source: R. G. Miller, Biometrika 61 (1974) 1; C. F. J. Wu, Annals of Statistics 14 (1986) 1261.
+pub(crate) fn differing(weak: &WeakEstimate, variance: f64) -> Option<Differing> {
+    let count = weak.columns.len();
+    let stacked = weak.stacked.as_ref()?;
+    let (factor, size) = (stacked.joint_factor()?, count + 5);
+    let parts: Vec<Vec<&[f64]>> = match weak.parts.len() {
+        many if many >= CUTS => weak.parts.iter().map(|part| vec![part.rows.as_slice()]).collect(),
+        _ => (0..CUTS).map(|k| rows_between(weak, [k, k + 1].map(|k| k as f64 / CUTS as f64))).collect(),
+    };
+    let mut covariance = &factor * factor.transpose() * variance;
+    let (_, axes) = eigen(covariance.fixed_view::<5, 5>(count, count).into_owned());
+    let alone = |at: usize| DVector::from_fn(size, |i, _| if i == at { 1.0 } else { 0.0 });
+    let columns = (0..count).map(|k| (weak.columns[k].label().name, alone(k), DIFFERING, NAMED));
+    let of_tensor = (0..5).map(|k| {
+        let axis = DVector::from_fn(size, |i, _| if i < count { 0.0 } else { axes[(i - count, k)] });
+        ("the tensor", axis, SCATTERED, SCATTERED)
+    });
+    let mut found = Differing { named: Vec::new(), added: Vec::new() };
+    for (name, direction, chance, of_name) in columns.chain(of_tensor) {
+        let towards = &factor * factor.tr_mul(&direction);
+        let (ratio, dof) = pulls(weak, stacked, &parts, &factor, &towards, variance);
+        let alone = direction.dot(&(&covariance * &direction));
+        let before = direction.dot(&towards) * variance;
+        if dof.is_finite() && ratio > quantile(dof, chance) / dof && ratio * before > alone {
+            let added = &covariance * &direction * ((ratio * before - alone).sqrt() / alone);
+            covariance += &added * added.transpose();
+            found.added.push(added);
+            if ratio > quantile(dof, of_name) / dof {
+                found.named.push((name, ratio.sqrt()));
+            }
+        }
+    }
+    (!found.added.is_empty()).then_some(found)
+}
+
+/// Sum of squares of the pulls of all parts along `towards`, over what the noise makes of it, and its degrees of freedom.
+fn pulls(
+    weak: &WeakEstimate,
+    stacked: &Stacked,
+    parts: &[Vec<&[f64]>],
+    factor: &DMatrix<f64>,
+    towards: &DVector<f64>,
+    variance: f64,
+) -> (f64, f64) {
+    let width = towards.len() + 1;
+    let (mut pulls, mut expected, mut squares) = (0.0, 0.0, 0.0);
+    for part in parts {
+        let (mut pull, mut own, mut shared) = (0.0, 0.0, DVector::zeros(width - 1));
+        for rows in part {
+            let left = residuals(rows, width, &stacked.origin, &weak.at);
+            for (row, left) in rows.chunks_exact(width).zip(left) {
+                let moved: f64 = row.iter().zip(towards).map(|(a, u)| a * u).sum();
+                pull += moved * left;
+                own += moved * moved;
+                shared.iter_mut().zip(row).for_each(|(sum, a)| *sum += a * moved);
+            }
+        }
+        let known = own - factor.tr_mul(&shared).norm_squared();
+        pulls += pull * pull;
+        expected += known;
+        squares += known * known;
+    }
+    // parts that weigh unequally are fewer
+    (pulls / (variance * expected), expected * expected / squares)
+}
+
+impl Differing {
+    /// By how much the variance of a column is enlarged.
+    pub(crate) fn variance(&self, column: usize) -> f64 {
+        self.added.iter().map(|added| added[column] * added[column]).sum()
+    }
+
+    /// The displacements of some columns and the tensor, side by side.
+    pub(crate) fn of(&self, kept: &[usize]) -> DMatrix<f64> {
+        let size = self.added.first().map_or(0, DVector::len);
+        let rows: Vec<usize> = kept.iter().copied().chain(size - 5..size).collect();
+        DMatrix::from_fn(rows.len(), self.added.len(), |i, k| self.added[k][rows[i]])
+    }
+}

@@ -1,0 +1,380 @@
+//! From a first path to the likeliest one, with tensor, torque and noise.
+
+use nalgebra::{DMatrix, SMatrix, SVector, Vector3};
+use polhode::rotation::{Quat, Vec3};
+
+use crate::columns::column::{Column, Unknowns};
+use crate::likelihood::local::node;
+use crate::likelihood::motion::Start;
+use crate::likelihood::track::Track;
+use crate::physical::coordinates::{Coordinates, Form, eigen, tensor};
+use crate::settings::torque::TorqueNoise;
+use crate::smoothed::dynamics::{ALL, Law, SHARED};
+use crate::smoothed::filter::{Kept, Level, Link, Sums, filter, links, smoothed};
+use crate::solve::levels::{golden, newton, vertex};
+use crate::thresholds::levels::{GAIN, RESHAPED};
+use crate::thresholds::likelihood::{FIRST, OUTLIER};
+use crate::thresholds::noise::LEAST;
+use crate::thresholds::rounds::{FALL, KEPT, REACHED, SAME, SHARES, STILL};
+use crate::thresholds::smoothed::{ALONE, DECADES, ROUNDS};
+
+/// What is known of the noise.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Noise {
+    /// Standard deviation of a component of an attitude, where it is given, rad.
+    pub(crate) attitude: Option<f64>,
+    /// Torque noise in units of the rate.
+    pub(crate) torque: TorqueNoise,
+}
+
+/// Tensor, torque, noise and path of the largest likelihood.
+#[derive(Clone)]
+pub(crate) struct Found {
+    pub(crate) columns: Vec<Column>,
+    pub(crate) at: Unknowns,
+    /// Attitude and rate at each sample of each track.
+    pub(crate) paths: Vec<Vec<Start>>,
+    /// The samples that were used in the end.
+    pub(crate) tracks: Vec<Track>,
+    pub(crate) level: Level,
+    /// Variance of a component of an attitude.
+    pub(crate) variance: f64,
+    /// Information on the tensor and the coefficients, each stretch with its start at its best.
+    pub(crate) information: DMatrix<f64>,
+    /// The same on the tensor by each stretch alone, where it tells all of it.
+    pub(crate) of_each: Vec<Form>,
+    /// The innovations of each track over their deviations, by sample.
+    pub(crate) whitened: Vec<Vec<(usize, Vector3<f64>)>>,
+    /// Log-likelihood, the unknowns at their best.
+    pub(crate) likelihood: f64,
+    /// Components that were used, less the unknowns.
+    pub(crate) dof: f64,
+    /// Change of the rates from each sample to the next, and what of it the model does not explain.
+    changes: Vec<Vec<[Vector3<f64>; 2]>>,
+    /// Whether the search came to rest.
+    pub(crate) is_still: bool,
+}
+
+/// The equations of all stretches at a path.
+struct Solved {
+    /// Of the shared unknowns.
+    step: SVector<f64, SHARED>,
+    starts: Vec<SVector<f64, 6>>,
+    information: SMatrix<f64, SHARED, SHARED>,
+    /// Twice the negative logarithm of the restricted likelihood, and of the likelihood.
+    restricted: f64,
+    plain: f64,
+    variance: f64,
+    dof: f64,
+}
+
+struct Search<'a> {
+    columns: &'a [Column],
+    noise: Noise,
+    tracks: Vec<Track>,
+    at: Unknowns,
+    paths: Vec<Vec<Start>>,
+    level: Level,
+}
+
+/// The search from a first tensor; `None` where no path can be followed.
+pub(crate) fn first(tracks: &[Track], x: Coordinates, columns: &[Column], noise: Noise) -> Option<Found> {
+    let path = |track: &Track| -> Option<Vec<Start>> {
+        let each = (0..track.times.len()).map(|k| node(&track.times, &track.attitudes, k, FIRST));
+        each.map(|node| node.map(|node| Start { attitude: node.attitude, rate: node.rate })).collect()
+    };
+    let paths = tracks.iter().map(path).collect::<Option<Vec<_>>>()?;
+    let at = Unknowns::at(x, columns);
+    Search { columns, noise, tracks: tracks.to_vec(), at, paths, level: boundless(tracks) }.run()
+}
+
+/// Gain of twice the log-likelihood that torque noise brings to a motion under a torque, to a decade of its level.
+pub(crate) fn gain_of_noise(
+    tracks: &[Track],
+    at: Unknowns,
+    columns: &[Column],
+    paths: Vec<Vec<Start>>,
+    noise: Noise,
+) -> Option<f64> {
+    let search = Search { columns, noise, tracks: tracks.to_vec(), at, paths, level: boundless(tracks) };
+    let links = search.links(&Law::new(&search.at, columns)?)?;
+    let cost = |level| search.solve(&links, level).map(|solved| solved.restricted);
+    let none = cost(Level { torque: 0.0, ..search.level })?;
+    let decades = (0..DECADES).map(|decade| search.level.torque * libm::pow(10.0, 1.0 - decade as f64));
+    let least = decades.filter_map(|torque| cost(Level { torque, ..search.level })).fold(none, f64::min);
+    Some(none - least)
+}
+
+/// So much torque noise that each sample is heard for a part of a radian: the variance of an attitude over a time is that of the torque noise
+/// over its fourth power.
+fn boundless(tracks: &[Track]) -> Level {
+    let spans = tracks.iter().map(|t| t.reach() / t.times.len() as f64);
+    Level { torque: 2.0 * spans.fold(0.0, f64::max) / (ALONE * ALONE * ALONE * ALONE), shape: 0 }
+}
+
+impl Found {
+    /// The search for a model with other coefficients, from here.
+    pub(crate) fn with(&self, columns: &[Column], noise: Noise) -> Option<Found> {
+        let value = |column: &Column| {
+            let own = self.columns.iter().position(|own| own.is_alike(column));
+            own.map_or(0.0, |k| self.at.c[k])
+        };
+        let at = Unknowns { x: self.at.x, c: columns.iter().map(value).collect() };
+        let (tracks, paths) = (self.tracks.clone(), self.paths.clone());
+        Search { columns, noise, tracks, at, paths, level: self.level }.run()
+    }
+
+    /// Share of the squared change of the rates, within times in which the body turns by about a radian, that torque noise makes.
+    pub(crate) fn unexplained(&self) -> f64 {
+        let (mut left, mut all) = (0.0, 0.0);
+        for (track, changes) in self.tracks.iter().zip(&self.changes) {
+            let mut sums = [Vector3::zeros(); 2];
+            let mut from = track.times[0];
+            for (changed, t) in changes.iter().zip(&track.times[1..]) {
+                sums = [0, 1].map(|k| sums[k] + changed[k]);
+                if t - from >= FIRST {
+                    all += sums[0].norm_squared();
+                    left += sums[1].norm_squared();
+                    (sums, from) = ([Vector3::zeros(); 2], *t);
+                }
+            }
+        }
+        if all > 0.0 { left / all } else { 0.0 }
+    }
+
+    /// The covariance of the coordinates of the tensor.
+    pub(crate) fn covariance(&self) -> Option<Form> {
+        let all = self.information.clone().cholesky()?.inverse();
+        Some(all.fixed_view::<5, 5>(0, 0).into_owned())
+    }
+}
+
+impl Search<'_> {
+    fn run(mut self) -> Option<Found> {
+        let mut is_still = false;
+        for round in 0..ROUNDS {
+            let law = Law::new(&self.at, self.columns)?;
+            let links = self.links(&law)?;
+            let solved = self.solve(&links, self.level)?;
+            let moved = solved.step.dot(&(solved.information * solved.step)).max(0.0).sqrt();
+            let target = self.target(&links, round > 0, moved <= STILL)?;
+            let level = Level { torque: target.torque.max(FALL * self.level.torque), ..target };
+            // what changes nothing is nothing
+            let level = if target.torque == 0.0 && self.is_nothing(&links, level)? { target } else { level };
+            let is_same = (level.torque - self.level.torque).abs() <= SAME * level.torque
+                && level.shape == self.level.shape;
+            self.advance(&links, &solved)?;
+            self.level = level;
+            if moved <= STILL && is_same {
+                is_still = true;
+                if !self.leave_out()? {
+                    break;
+                }
+            }
+        }
+        self.found(is_still)
+    }
+
+    fn links(&self, law: &Law) -> Option<Vec<Vec<Link>>> {
+        self.tracks.iter().zip(&self.paths).map(|(track, path)| links(track, path, law)).collect()
+    }
+
+    fn sums(&self, links: &[Vec<Link>], level: Level) -> Option<Vec<Sums>> {
+        let each = self.tracks.iter().zip(&self.paths).zip(links);
+        each.map(|((track, path), links)| filter(track, path, links, level, |_| {})).collect()
+    }
+
+    fn solve(&self, links: &[Vec<Link>], level: Level) -> Option<Solved> {
+        let sums = self.sums(links, level)?;
+        let mut information = SMatrix::<f64, SHARED, SHARED>::zeros();
+        let mut right = SVector::<f64, SHARED>::zeros();
+        let (mut squares, mut determinant, mut count) = (0.0, 0.0, 0.0);
+        let (mut of_starts, mut own) = (0.0, Vec::with_capacity(sums.len()));
+        for one in &sums {
+            let cholesky = one.matrix.fixed_view::<6, 6>(0, 0).into_owned().cholesky()?;
+            let inverse = cholesky.inverse();
+            let mixed = one.matrix.fixed_view::<6, SHARED>(0, 6).into_owned();
+            let start = one.right.fixed_rows::<6>(0).into_owned();
+            information += one.matrix.fixed_view::<SHARED, SHARED>(6, 6) - mixed.tr_mul(&(inverse * mixed));
+            right += one.right.fixed_rows::<SHARED>(6) - mixed.tr_mul(&(inverse * start));
+            squares += one.squares - start.dot(&(inverse * start));
+            of_starts += 2.0 * cholesky.l().diagonal().map(libm::log).sum();
+            determinant += one.log_determinant;
+            count += one.count;
+            own.push((inverse, start, mixed));
+        }
+        // coefficients that the model has not
+        for k in 5 + self.columns.len()..SHARED {
+            information[(k, k)] = 1.0;
+        }
+        let cholesky = information.cholesky()?;
+        let step = cholesky.solve(&right);
+        squares = (squares - step.dot(&right)).max(0.0);
+        let unknowns = (6 * sums.len() + 5 + self.columns.len()) as f64;
+        let dof = count - unknowns;
+        if dof <= 0.0 {
+            return None;
+        }
+        let variance = self.noise.attitude.map_or((squares / dof).max(LEAST), |sigma| sigma * sigma);
+        let of_unknowns = of_starts + 2.0 * cholesky.l().diagonal().map(libm::log).sum();
+        let fit = squares / variance + determinant;
+        let starts = own.iter().map(|(inverse, start, mixed)| inverse * (start - mixed * step)).collect();
+        Some(Solved {
+            step,
+            starts,
+            information: (information + information.transpose()) * (0.5 / variance),
+            restricted: fit + dof * libm::log(variance) + of_unknowns,
+            plain: fit + count * libm::log(variance),
+            variance,
+            dof,
+        })
+    }
+
+    /// Moves path and unknowns, which must stay finite.
+    fn advance(&mut self, links: &[Vec<Link>], solved: &Solved) -> Option<()> {
+        let of_tensor = solved.step.fixed_rows::<5>(0).into_owned();
+        let share = self.room(&of_tensor);
+        for (((track, path), links), start) in
+            self.tracks.iter().zip(&mut self.paths).zip(links).zip(&solved.starts)
+        {
+            let mut kept: Vec<Kept> = Vec::with_capacity(path.len());
+            filter(track, path, links, self.level, |at| kept.push(at))?;
+            let p = together(start, &solved.step);
+            for (at, moved) in path.iter_mut().zip(smoothed(&kept, links, &p)) {
+                let turn = Vec3([moved[0], moved[1], moved[2]]) * share;
+                at.attitude = (at.attitude * Quat::exponential(turn)).normalized();
+                at.rate += moved.fixed_rows::<3>(3) * share;
+            }
+        }
+        self.at.x += of_tensor * share;
+        self.at.c.iter_mut().zip(solved.step.iter().skip(5)).for_each(|(c, step)| *c += step * share);
+        self.at.x.iter().chain(&self.at.c).all(|v| v.is_finite()).then_some(())
+    }
+
+    /// The share of a step after which the smallest moment is not yet lost.
+    fn room(&self, step: &Coordinates) -> f64 {
+        let smallest = |share: f64| eigen(tensor(&(self.at.x + step * share))).0[0];
+        let least = KEPT * smallest(0.0);
+        let shares = core::iter::successors(Some(1.0), |share| Some(0.5 * share));
+        shares.take(SHARES).find(|&share| smallest(share) >= REACHED * least).unwrap_or(0.0)
+    }
+
+    /// The likeliest torque noise where the search stands, near that of before where it has `begun`.
+    fn target(&self, links: &[Vec<Link>], begun: bool, is_at_rest: bool) -> Option<Level> {
+        let at = |level: Level| self.solve(links, level).map_or(f64::INFINITY, |solved| solved.restricted);
+        let none = Level { torque: 0.0, ..self.level };
+        match self.noise.torque {
+            TorqueNoise::None => return Some(none),
+            TorqueNoise::Given(density) => {
+                let variance = self.solve(links, self.level)?.variance;
+                return Some(Level { torque: density / variance, shape: 0 });
+            }
+            TorqueNoise::Fitted if self.level.torque == 0.0 => return Some(none),
+            TorqueNoise::Fitted => {}
+        }
+        let near = begun.then_some(libm::log10(self.level.torque));
+        let mut best: Option<(f64, Level)> = None;
+        // the axes of torque noise from where there is a motion
+        let shapes = [self.level.shape, 1 - self.level.shape];
+        for &shape in &shapes[..if near.is_some() && !is_at_rest { 1 } else { 2 }] {
+            let cost = |exponent: f64| at(Level { torque: libm::pow(10.0, exponent), shape });
+            let exponent = match near {
+                Some(near) => {
+                    let (step, least) = (newton(cost, near) - near, cost(near));
+                    // far from a minimum a whole step may lead over it
+                    let shares = [1.0, 0.3, 0.1].map(|share| near + share * step);
+                    shares.into_iter().find(|exponent| cost(*exponent) < least).unwrap_or(near)
+                }
+                None => {
+                    let top = libm::log10(self.level.torque) + 1.0;
+                    let each = (0..DECADES).map(|decade| top - decade as f64).map(|e| (cost(e), e));
+                    let (_, decade) = each.min_by(|a, b| a.0.total_cmp(&b.0))?;
+                    vertex(cost, golden(cost, decade - 1.0, decade + 1.0))
+                }
+            };
+            let (found, torque) = (cost(exponent), libm::pow(10.0, exponent));
+            if best.is_none_or(|(least, _)| found < least - RESHAPED) {
+                best = Some((found, Level { torque, shape }));
+            }
+        }
+        let (cost, level) = best?;
+        Some(if at(none) - cost <= GAIN { none } else { level })
+    }
+
+    /// Whether a level of torque noise is as good as none.
+    fn is_nothing(&self, links: &[Vec<Link>], level: Level) -> Option<bool> {
+        let none = Level { torque: 0.0, ..level };
+        let (with, without) = (self.solve(links, level)?, self.solve(links, none)?);
+        let moved = with.step - without.step;
+        Some(moved.dot(&(without.information * moved)) < STILL && with.restricted - without.restricted < GAIN)
+    }
+
+    /// Leaves out the samples that stand out of the noise; whether there was one.
+    fn leave_out(&mut self) -> Option<bool> {
+        let found = self.found(true)?;
+        let mut any = false;
+        for (track, whitened) in self.tracks.iter_mut().zip(&found.whitened) {
+            for (sample, _) in whitened.iter().filter(|(_, left)| left.norm() > OUTLIER) {
+                track.used[*sample] = false;
+                any = true;
+            }
+        }
+        Some(any)
+    }
+
+    /// What is found where the search stands.
+    fn found(&self, is_still: bool) -> Option<Found> {
+        let law = Law::new(&self.at, self.columns)?;
+        let links = self.links(&law)?;
+        let solved = self.solve(&links, self.level)?;
+        let deviation = solved.variance.sqrt();
+        let (mut whitened, mut of_each) = (Vec::new(), Vec::new());
+        for (((track, path), links), start) in
+            self.tracks.iter().zip(&self.paths).zip(&links).zip(&solved.starts)
+        {
+            let p = together(start, &solved.step);
+            let (mut own, mut sample) = (Vec::new(), 0);
+            let sums = filter(track, path, links, self.level, |at| {
+                own.extend(at.whitened(&p).map(|left| (sample, left / deviation)));
+                sample += 1;
+            })?;
+            whitened.push(own);
+            of_each.push(of_tensor(&sums, self.columns.len()).unwrap_or_else(Form::zeros) / solved.variance);
+        }
+        let size = 5 + self.columns.len();
+        let changes = links.iter().zip(&self.paths).map(|(links, path)| {
+            let each = links.iter().zip(path.windows(2));
+            each.map(|(link, path)| [path[1].rate - path[0].rate, -link.left_of_rate()]).collect()
+        });
+        let changes = changes.collect();
+        Some(Found {
+            columns: self.columns.to_vec(),
+            at: self.at.clone(),
+            paths: self.paths.clone(),
+            tracks: self.tracks.clone(),
+            level: self.level,
+            variance: solved.variance,
+            information: DMatrix::from_fn(size, size, |i, k| solved.information[(i, k)]),
+            of_each,
+            whitened,
+            likelihood: -0.5 * solved.plain,
+            dof: solved.dof,
+            changes,
+            is_still,
+        })
+    }
+}
+
+/// A start and what is shared.
+fn together(start: &SVector<f64, 6>, shared: &SVector<f64, SHARED>) -> SVector<f64, ALL> {
+    SVector::from_iterator(start.iter().chain(shared.iter()).copied())
+}
+
+/// The information on the tensor by one stretch alone, with `coefficients` of a torque.
+fn of_tensor(sums: &Sums, coefficients: usize) -> Option<Form> {
+    let others: Vec<usize> = (0..6).chain(11..11 + coefficients).collect();
+    let own = DMatrix::from_fn(others.len(), others.len(), |i, k| sums.matrix[(others[i], others[k])]);
+    let mixed = DMatrix::from_fn(others.len(), 5, |i, k| sums.matrix[(others[i], 6 + k)]);
+    let taken = mixed.tr_mul(&own.cholesky()?.solve(&mixed));
+    Some(sums.matrix.fixed_view::<5, 5>(6, 6) - Form::from_fn(|i, k| taken[(i, k)]))
+}
