@@ -387,3 +387,15 @@ fn smaller(factor: Option<f64>) -> String {
 fn known(axes: &[AverageAxis]) -> String {
     axes.iter().map(|axis| format!(". Known: {axis}")).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_are_printed_to_two_digits() {
+        let shares = [0.5, 0.123, 0.0456, 0.000_789, 1.2e-5, 9e-6];
+        let texts = ["50 %", "12 %", "4.6 %", "0.079 %", "0.0012 %", "less than 0.001 %"];
+        assert_eq!(shares.map(per_cent), texts);
+    }
+}

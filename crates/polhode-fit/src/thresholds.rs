@@ -253,7 +253,6 @@ thresholds! {
         MET: f64 = 0.1, "share of that by which a tensor may break the law", UNMEASURED;
         ROUNDS: usize = 400, "rounds of cuts until limits are checked", UNMEASURED;
         PUSHES: f64 = 1e-3, "multiplier of a limit that takes part in a clash", UNMEASURED;
-        ANYWHERE: f64 = 1e3, "relaxation beyond any", UNMEASURED;
         PARALLEL: f64 = 1e-12, "how far the cosine of the angle of two axes may be from 1 if they are one", DERIVED;
         SYMMETRIC: f64 = 1e-9, "relative asymmetry of a covariance that is rounding", DERIVED;
     }

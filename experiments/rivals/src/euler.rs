@@ -1,21 +1,22 @@
-//! Free motion over a short time, with its derivatives with respect to its start and to the tensor.
+//! Free motion over a short time, with or without a drag −d J ω, and its derivatives.
 
 use nalgebra::{Matrix3, SMatrix, Vector3, Vector5};
 
 use super::coordinates::{basis, tensor};
 
-/// ∂ω/∂x and ∂ω/∂ω₀, side by side.
-pub(super) type Sensitivity = SMatrix<f64, 3, 8>;
+/// ∂ω/∂x and ∂ω/∂ω₀ side by side, eight columns, or nine with ∂ω/∂d before them.
+pub(super) type Sensitivity<const N: usize> = SMatrix<f64, 3, N>;
 
 /// [ω]ₓ B − [B ω]ₓ, the derivative of ω × B ω.
 pub(super) fn cross_derivative(b: &Matrix3<f64>, w: &Vector3<f64>) -> Matrix3<f64> {
     w.cross_matrix() * b - (b * w).cross_matrix()
 }
 
-/// Euler's equation of one tensor.
+/// Euler's equation of one tensor and one drag.
 pub(super) struct Euler {
     j: Matrix3<f64>,
     inverse: Matrix3<f64>,
+    drag: f64,
 }
 
 /// Longest step of the integrator, in radians: errors of order 1e-7.
@@ -25,22 +26,33 @@ impl Euler {
     /// `None` where the tensor has no inverse.
     pub(super) fn new(x: &Vector5<f64>) -> Option<Self> {
         let j = tensor(x);
-        Some(Euler { j, inverse: j.try_inverse()? })
+        Some(Euler { j, inverse: j.try_inverse()?, drag: 0.0 })
     }
 
-    fn derivative(&self, w: &Vector3<f64>, s: &Sensitivity) -> (Vector3<f64>, Sensitivity) {
-        let slope = -self.inverse * w.cross(&(self.j * w));
-        let mut ds = -self.inverse * (cross_derivative(&self.j, w) * s);
+    pub(super) fn with_drag(self, drag: f64) -> Self {
+        Euler { drag, ..self }
+    }
+
+    fn derivative<const N: usize>(
+        &self,
+        w: &Vector3<f64>,
+        s: &Sensitivity<N>,
+    ) -> (Vector3<f64>, Sensitivity<N>) {
+        let free = -self.inverse * w.cross(&(self.j * w));
+        let mut ds = -self.inverse * (cross_derivative(&self.j, w) * s) - s * self.drag;
         for k in 0..5 {
             let b = basis(k);
-            let own = self.inverse * (w.cross(&(b * w)) + b * slope);
-            ds.set_column(k, &(ds.column(k) - own));
+            let own = self.inverse * (w.cross(&(b * w)) + b * free);
+            ds.set_column(N - 8 + k, &(ds.column(N - 8 + k) - own));
         }
-        (slope, ds)
+        if N > 8 {
+            ds.set_column(0, &(ds.column(0) - w));
+        }
+        (free - w * self.drag, ds)
     }
 
     /// Moves a rate and its sensitivities on by `time` with the classical Runge–Kutta step.
-    pub(super) fn advance(&self, w: &mut Vector3<f64>, s: &mut Sensitivity, time: f64) {
+    pub(super) fn advance<const N: usize>(&self, w: &mut Vector3<f64>, s: &mut Sensitivity<N>, time: f64) {
         let parts = (w.norm() * time.abs() / STEP).ceil().clamp(1.0, 100.0);
         let h = time / parts;
         for _ in 0..parts as usize {
@@ -55,6 +67,6 @@ impl Euler {
 }
 
 /// Sensitivities at a start.
-pub(super) fn at_start() -> Sensitivity {
-    Sensitivity::from_fn(|i, k| if k == i + 5 { 1.0 } else { 0.0 })
+pub(super) fn at_start<const N: usize>() -> Sensitivity<N> {
+    Sensitivity::from_fn(|i, k| if k == i + N - 3 { 1.0 } else { 0.0 })
 }

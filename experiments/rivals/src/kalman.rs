@@ -87,7 +87,7 @@ fn about(
     let mut rate = *end;
     let mut rates = vec![rate];
     for times in s.times.windows(2).rev() {
-        euler.advance(&mut rate, &mut at_start(), times[0] - times[1]);
+        euler.advance(&mut rate, &mut at_start::<8>(), times[0] - times[1]);
         rates.push(rate);
     }
     rates.reverse();
@@ -110,7 +110,7 @@ fn about(
 fn update(
     z: &mut State,
     p: &mut Covariance,
-    by: &Sensitivity,
+    by: &Sensitivity<8>,
     sigma: f64,
     left: impl Fn(Vector3<f64>) -> Vector3<f64>,
 ) -> Option<()> {

@@ -27,7 +27,7 @@ pub enum Rival {
     Momentum,
     /// The same with R from a second instrument, which no other row has.
     MomentumWithAttitude,
-    /// Weak form with errors in variables, the radius being the best of several at each noise.
+    /// Weak form with errors in variables, as published; the smallest radius being the best of several at each noise.
     Wendy,
     /// The largest likelihood of the same equations, the radius being the best of several at each noise.
     WendyLikelihood,
@@ -37,10 +37,12 @@ pub enum Rival {
     Smoother,
     /// Maximum likelihood by multiple shooting.
     OutputError,
+    /// The same with a drag −d J ω as one more unknown.
+    OutputErrorWithDrag,
 }
 
 /// All of them, maximum likelihood last.
-pub const RIVALS: [Rival; 9] = [
+pub const RIVALS: [Rival; 10] = [
     Rival::CentralDifferences,
     Rival::SavitzkyGolay,
     Rival::Momentum,
@@ -50,13 +52,14 @@ pub const RIVALS: [Rival; 9] = [
     Rival::Kalman,
     Rival::Smoother,
     Rival::OutputError,
+    Rival::OutputErrorWithDrag,
 ];
 
 /// Samples of a Savitzky–Golay window.
 const WINDOWS: [usize; 7] = [51, 101, 151, 201, 301, 401, 601];
-/// Half widths of the test functions of WENDy, in radians of the motion.
-const RADII: [f64; 6] = [0.375, 0.75, 1.5, 3.0, 6.0, 12.0];
-/// Those of the likelihood, each of which costs ten times as much.
+/// Smallest half widths of the test functions of WENDy, in radians of the motion.
+const RADII: [f64; 5] = [0.5, 1.0, 2.0, 4.0, 8.0];
+/// Half widths of the likelihood, which has but one and costs ten times as much.
 const OF_LIKELIHOOD: [f64; 4] = [0.75, 1.5, 3.0, 6.0];
 /// Standard deviations of a coordinate of the tensor before a filter runs, shares of the trace.
 const PRIORS: [f64; 4] = [0.003, 0.01, 0.03, WIDE];
@@ -112,6 +115,7 @@ impl Rival {
             Self::Kalman => "extended Kalman filter, tuned",
             Self::Smoother => "iterated Kalman smoother",
             Self::OutputError => "maximum likelihood",
+            Self::OutputErrorWithDrag => "maximum likelihood with drag",
         }
     }
 
@@ -130,7 +134,7 @@ impl Rival {
     pub fn choice(self, k: usize) -> String {
         match self {
             Self::SavitzkyGolay => format!("window {}", WINDOWS[k]),
-            Self::Wendy => format!("radius {} rad", RADII[k]),
+            Self::Wendy => format!("radii from {} rad", RADII[k]),
             Self::WendyLikelihood => format!("radius {} rad", OF_LIKELIHOOD[k]),
             Self::Kalman => format!("prior {}", PRIORS[k]),
             _ => String::new(),
@@ -164,7 +168,8 @@ impl Rival {
             Self::WendyLikelihood => wendy::likeliest(&stretches, OF_LIKELIHOOD[k], sigma),
             Self::Kalman => kalman::filtered(&stretches, start()?, PRIORS[k], sigma),
             Self::Smoother => kalman::smoothed(&stretches, start()?, WIDE, sigma),
-            Self::OutputError => output_error::answer(&stretches, start()?, sigma),
+            Self::OutputError => output_error::answer(&stretches, start()?, false, sigma),
+            Self::OutputErrorWithDrag => output_error::answer(&stretches, start()?, true, sigma),
         }
     }
 }
@@ -187,7 +192,7 @@ mod tests {
     use polhode::flow::FreeMotion;
     use polhode::inertia::Inertia;
     use polhode::num::Random;
-    use polhode_fit::{Settings, fit, simulate};
+    use polhode_fit::{Disturbances, Gyroscope, Settings, fit, simulate, simulate_with};
 
     use super::*;
 
@@ -245,6 +250,20 @@ mod tests {
             // the 99.9 % point of χ² with five degrees of freedom
             assert!(square.is_none_or(|square| square < 20.5), "{}: {square:?}", rival.name());
         }
+    }
+
+    #[test]
+    fn a_drag_is_an_unknown_of_one_rival() {
+        let (free, sigma) = (example(0.0), 1e-3);
+        let (body, omega) = (Inertia::from_tensor(free.j).unwrap(), Vector3::new(0.3, -0.8, 0.6));
+        let times: Vec<f64> = (0..3000).map(|i| 0.01 * f64::from(i)).collect();
+        let (acting, sensor) =
+            (Disturbances::default().with_relative_drag(0.02), Gyroscope::default().with_noise(sigma));
+        let rates = simulate_with(&body, omega, &times, &acting, &sensor, &mut Random::new(1)).unwrap();
+        let example = Example { record: Record::from_samples(&times, &rates).unwrap(), ..free };
+        let [knows, not] =
+            [Rival::OutputErrorWithDrag, Rival::OutputError].map(|rival| best(rival, &example, sigma));
+        assert!(knows.0 * 10.0 < not.0 && knows.1.unwrap() < 20.5, "{knows:?} {not:?}");
     }
 
     /// In the metric of entries the nearest physical tensor is the clipped spectrum; in any metric no step towards another

@@ -1,15 +1,15 @@
 //! Maximum likelihood under white noise: output error by multiple shooting.
 //!
-//! The unknowns are the tensor x and the rate at nodes a few radians apart. Each round linearises the motion from every
-//! node, takes the jumps between them out as linear constraints, which leaves x and the first rate, and solves for both
-//! by least squares (Gauss–Newton).
+//! The unknowns are the tensor x, the drag where there is one, and the rate at nodes a few radians apart. Each round linearises the
+//! motion from every node, takes the jumps between them out as linear constraints, which leaves tensor, drag and the first rate, and
+//! solves for these by least squares (Gauss–Newton).
 //!
 //! Source: H. G. Bock, Numerical treatment of inverse problems in chemical reaction kinetics, Springer (1981).
 
-use nalgebra::{Matrix5, SMatrix, SVector, Vector3, Vector5};
+use nalgebra::{Matrix6, SMatrix, SVector, Vector3, Vector5, Vector6};
 
 use super::Answer;
-use super::euler::{Euler, at_start};
+use super::euler::{Euler, Sensitivity, at_start};
 use super::record::Stretch;
 use super::strong::local_cubic;
 
@@ -23,39 +23,47 @@ const LONGEST: f64 = 0.1;
 /// Step, in standard deviations, that ends the rounds.
 const STILL: f64 = 1e-4;
 
-/// How jumps of the nodes follow from x and the first rate.
+/// How jumps of the nodes follow from drag, x and the first rate.
 struct Affine {
-    matrix: SMatrix<f64, 3, 8>,
+    matrix: Sensitivity<9>,
     constant: Vector3<f64>,
 }
 
-/// From the coordinates `x`. `None` where the rounds do not come to rest.
-pub(super) fn answer(stretches: &[Stretch], mut x: Vector5<f64>, sigma: f64) -> Option<Answer> {
+/// From the coordinates `x`, and with a drag −d J ω, from zero on, where the motion `slows`. `None` where the rounds do not come to
+/// rest.
+pub(super) fn answer(stretches: &[Stretch], mut x: Vector5<f64>, slows: bool, sigma: f64) -> Option<Answer> {
     let mut nodes: Vec<Vec<(usize, Vector3<f64>)>> = stretches.iter().map(nodes).collect::<Option<_>>()?;
+    let mut drag = 0.0;
     for _ in 0..ROUNDS {
-        let mut information = Matrix5::zeros();
-        let mut right = Vector5::zeros();
+        let mut information = Matrix6::zeros();
+        let mut right = Vector6::zeros();
         let mut eliminated = Vec::new();
-        let euler = Euler::new(&x)?;
+        let euler = Euler::new(&x)?.with_drag(drag);
         for (s, nodes) in stretches.iter().zip(&nodes) {
             let (normal, gradient, jumps) = shoot(&euler, s, nodes);
-            let start = normal.fixed_view::<3, 3>(5, 5).into_owned().cholesky()?;
-            let mixed = normal.fixed_view::<3, 5>(5, 0).into_owned();
-            let own = gradient.fixed_rows::<3>(5).into_owned();
-            information += normal.fixed_view::<5, 5>(0, 0) - mixed.transpose() * start.solve(&mixed);
-            right += gradient.fixed_rows::<5>(0) - mixed.transpose() * start.solve(&own);
+            let start = normal.fixed_view::<3, 3>(6, 6).into_owned().cholesky()?;
+            let mixed = normal.fixed_view::<3, 6>(6, 0).into_owned();
+            let own = gradient.fixed_rows::<3>(6).into_owned();
+            information += normal.fixed_view::<6, 6>(0, 0) - mixed.transpose() * start.solve(&mixed);
+            right += gradient.fixed_rows::<6>(0) - mixed.transpose() * start.solve(&own);
             eliminated.push((start, mixed, own, jumps));
+        }
+        if !slows {
+            information.row_mut(0).fill(0.0);
+            information.column_mut(0).fill(0.0);
+            (information[(0, 0)], right[0]) = (1.0, 0.0);
         }
         let step = information.cholesky()?.solve(&right);
         if !step.iter().all(|v| v.is_finite()) {
             return None;
         }
         let share = (LONGEST / step.norm()).min(1.0);
-        x += step * share;
+        drag += step[0] * share;
+        x += step.fixed_rows::<5>(1) * share;
         let mut largest = 0.0_f64;
         for ((start, mixed, own, jumps), nodes) in eliminated.iter().zip(&mut nodes) {
             let first = start.solve(&(own - mixed * step));
-            let all = SVector::<f64, 8>::from_fn(|k, _| if k < 5 { step[k] } else { first[k - 5] });
+            let all = SVector::<f64, 9>::from_fn(|k, _| if k < 6 { step[k] } else { first[k - 6] });
             for (jump, (_, rate)) in jumps.iter().zip(nodes) {
                 let moved = jump.matrix * all + jump.constant;
                 largest = largest.max(moved.norm());
@@ -64,7 +72,9 @@ pub(super) fn answer(stretches: &[Stretch], mut x: Vector5<f64>, sigma: f64) -> 
         }
         let distance = step.dot(&(information * step)).sqrt() / sigma;
         if share == 1.0 && distance < STILL && largest < 0.01 * sigma.max(1e-6) {
-            return Answer::constrained(x, information / (sigma * sigma));
+            let mixed = information.fixed_view::<5, 1>(1, 0).into_owned();
+            let own = information.fixed_view::<5, 5>(1, 1) - mixed * mixed.transpose() / information[(0, 0)];
+            return Answer::constrained(x, own / (sigma * sigma));
         }
     }
     None
@@ -85,23 +95,23 @@ fn nodes(s: &Stretch) -> Option<Vec<(usize, Vector3<f64>)>> {
         .collect()
 }
 
-/// Normal equations of x and the first rate, and the jumps of the nodes.
+/// Normal equations of drag, x and the first rate, and the jumps of the nodes.
 fn shoot(
     euler: &Euler,
     s: &Stretch,
     nodes: &[(usize, Vector3<f64>)],
-) -> (SMatrix<f64, 8, 8>, SVector<f64, 8>, Vec<Affine>) {
+) -> (SMatrix<f64, 9, 9>, SVector<f64, 9>, Vec<Affine>) {
     let (mut normal, mut gradient) = (SMatrix::zeros(), SVector::zeros());
     let mut jumps = vec![Affine { matrix: at_start(), constant: Vector3::zeros() }];
     for (k, &(first, rate)) in nodes.iter().enumerate() {
         let end = nodes.get(k + 1).map_or(s.times.len(), |next| next.0);
         let (mut w, mut sensitivity) = (rate, at_start());
-        // the change of ω is that of x and that of the node, which is affine in x and the first rate
-        let chained = |sensitivity: &SMatrix<f64, 3, 8>, jump: &Affine| {
-            let by_node = sensitivity.fixed_view::<3, 3>(0, 5);
+        // the change of ω is that of drag and x and that of the node, which is affine in drag, x and the first rate
+        let chained = |sensitivity: &Sensitivity<9>, jump: &Affine| {
+            let by_node = sensitivity.fixed_view::<3, 3>(0, 6);
             let mut matrix = by_node * jump.matrix;
-            let by_tensor = matrix.fixed_view::<3, 5>(0, 0) + sensitivity.fixed_view::<3, 5>(0, 0);
-            matrix.fixed_view_mut::<3, 5>(0, 0).copy_from(&by_tensor);
+            let by_law = matrix.fixed_view::<3, 6>(0, 0) + sensitivity.fixed_view::<3, 6>(0, 0);
+            matrix.fixed_view_mut::<3, 6>(0, 0).copy_from(&by_law);
             Affine { matrix, constant: by_node * jump.constant }
         };
         for i in first..end {

@@ -4,24 +4,31 @@
 //! squares first, then least squares weighted by the covariance of the residuals, linearised about the samples as they
 //! are and about the last answer, until the answer rests.
 //!
+//! As published, the test functions have four widths, each twice the one before, and are replaced by their leading right singular
+//! vectors, as many as the corner of the sum of singular values says. With one width they stay as they are.
+//!
 //! Source: D. M. Bortz, D. A. Messenger, V. Dukic, Bull. Math. Biol. 85 (2023) 110, doi 10.1007/s11538-023-01208-6.
 
-use nalgebra::{Matrix3, Matrix5, Vector5};
+use nalgebra::{DMatrix, Matrix3, Matrix5, Vector5};
 
 use super::Answer;
 use super::coordinates::{basis, tensor};
 use super::euler::cross_derivative;
 use super::record::Stretch;
 
-/// Test functions for each radius.
+/// Test functions for each radius where there is one.
 const PER_RADIUS: f64 = 6.0;
-const ROUNDS: usize = 50;
+/// Where there are several. Centres as dense at each width as the width is large weigh the widths as equally dense ones of norm 1.
+const OF_SEVERAL: f64 = 3.0;
+/// Several radii over the smallest.
+const WIDTHS: [f64; 4] = [1.0, 2.0, 4.0, 8.0];
+/// Fewest combinations of test functions: twice the coordinates.
+const FEWEST: usize = 10;
+const ROUNDS: usize = 20;
 /// Standard deviations of a coordinate between two points of a difference quotient of the likelihood.
 const APART: f64 = 0.2;
-/// Step, in standard deviations, that ends the search for the largest likelihood.
+/// Step, in standard deviations, that ends the rounds, and the search for the largest likelihood.
 const NEAR: f64 = 1e-2;
-/// Change of the coordinates that ends the rounds.
-const STILL: f64 = 1e-8;
 
 /// A test function on the samples that it sees: values and slopes, times the weights of the trapezoidal rule.
 struct Test {
@@ -30,25 +37,57 @@ struct Test {
     slopes: Vec<f64>,
 }
 
+/// Coefficients of one combination of test functions.
+type Combination = Vec<f64>;
+
 /// The weak equations of a record.
 struct Weak<'a> {
     stretches: &'a [Stretch],
     tests: Vec<Vec<Test>>,
+    /// Orthonormal ones that take the place of the test functions, if any do.
+    combinations: Vec<Option<Vec<Combination>>>,
     equations: Vec<Vec<[f64; 6]>>,
 }
 
 impl<'a> Weak<'a> {
     fn new(stretches: &'a [Stretch], radius: f64) -> Self {
-        let tests: Vec<Vec<Test>> = stretches.iter().map(|s| tests(s, radius)).collect();
+        let tests: Vec<Vec<Test>> = stretches.iter().map(|s| tests(s, radius, PER_RADIUS)).collect();
         let equations = stretches.iter().zip(&tests).map(|(s, t)| equations(s, t)).collect();
-        Weak { stretches, tests, equations }
+        Weak { stretches, combinations: tests.iter().map(|_| None).collect(), tests, equations }
+    }
+
+    /// Of several widths, from `radius` on.
+    fn of_several(stretches: &'a [Stretch], radius: f64) -> Self {
+        let (mut all, mut combinations, mut all_equations) = (Vec::new(), Vec::new(), Vec::new());
+        for s in stretches {
+            let mut several: Vec<Test> =
+                WIDTHS.iter().flat_map(|width| tests(s, radius * width, OF_SEVERAL)).collect();
+            several.sort_by_key(|test| test.first);
+            let leading = leading(&several);
+            let rows = equations(s, &several);
+            let combined = |combination: &Combination, c: usize| {
+                let mut sum = [0.0; 6];
+                for (factor, row) in combination.iter().zip(rows.iter().skip(c).step_by(3)) {
+                    (0..6).for_each(|k| sum[k] += factor * row[k]);
+                }
+                sum
+            };
+            all_equations.push(leading.iter().flat_map(|v| (0..3).map(|c| combined(v, c))).collect());
+            combinations.push(Some(leading));
+            all.push(several);
+        }
+        Weak { stretches, tests: all, combinations, equations: all_equations }
     }
 
     /// The equations whitened by their covariance at `x`, and the logarithm of its determinant.
     fn whitened(&self, x: &Vector5<f64>) -> Option<(Vec<Vec<[f64; 6]>>, f64)> {
         let (mut whitened, mut determinant) = (Vec::with_capacity(self.equations.len()), 0.0);
-        for ((s, tests), rows) in self.stretches.iter().zip(&self.tests).zip(&self.equations) {
+        let parts = self.stretches.iter().zip(&self.tests).zip(&self.combinations).zip(&self.equations);
+        for (((s, tests), combinations), rows) in parts {
             let mut covariance = covariance(s, tests, x);
+            if let Some(combinations) = combinations {
+                covariance = covariance.of(combinations);
+            }
             covariance.factor()?;
             determinant += covariance.log_determinant();
             let mut rows = rows.clone();
@@ -58,14 +97,14 @@ impl<'a> Weak<'a> {
         Some((whitened, determinant))
     }
 
-    /// Least squares weighted again and again until the answer rests.
-    fn reweighted(&self) -> Option<(Vector5<f64>, Matrix5<f64>)> {
-        let (mut x, _) = solve(&self.equations)?;
+    /// Least squares weighted again and again, from `start` or from unweighted ones on, until the answer rests, with its information.
+    fn reweighted(&self, start: Option<Vector5<f64>>, sigma: f64) -> Option<(Vector5<f64>, Matrix5<f64>)> {
+        let mut x = start.or_else(|| solve(&self.equations).map(|(x, _)| x))?;
         for _ in 0..ROUNDS {
             let (next, information) = solve(&self.whitened(&x)?.0)?;
-            let step = (next - x).norm();
+            let (step, information) = (next - x, information / (sigma * sigma));
             x = next;
-            if step < STILL {
+            if step.dot(&(information * step)).sqrt() < NEAR {
                 return Some((x, information));
             }
         }
@@ -81,10 +120,12 @@ impl<'a> Weak<'a> {
     }
 }
 
-/// With test functions of half width `radius`. `None` where the rounds do not come to rest.
+/// With several half widths, from `radius` on. Where the rounds end is not where they begin: with the answer of the widest alone, which
+/// takes little time and is found in more noise. `None` where the rounds do not come to rest.
 pub(super) fn answer(stretches: &[Stretch], radius: f64, sigma: f64) -> Option<Answer> {
-    let (x, information) = Weak::new(stretches, radius).reweighted()?;
-    Answer::constrained(x, information / (sigma * sigma))
+    let start = Weak::new(stretches, radius * WIDTHS[3]).reweighted(None, sigma).map(|(x, _)| x);
+    let (x, information) = Weak::of_several(stretches, radius).reweighted(start, sigma)?;
+    Answer::constrained(x, information)
 }
 
 /// The largest likelihood of the weak residuals, whose covariance depends on the tensor, too (WENDy-MLE): from the answer of least
@@ -93,8 +134,7 @@ pub(super) fn answer(stretches: &[Stretch], radius: f64, sigma: f64) -> Option<A
 /// Source: N. Rummel, D. A. Messenger, S. Becker, V. Dukic, D. M. Bortz, arXiv 2502.08881 (2025).
 pub(super) fn likeliest(stretches: &[Stretch], radius: f64, sigma: f64) -> Option<Answer> {
     let weak = Weak::new(stretches, radius);
-    let (mut x, information) = weak.reweighted()?;
-    let information = information / (sigma * sigma);
+    let (mut x, information) = weak.reweighted(None, sigma)?;
     let covariance = information.try_inverse()?;
     for _ in 0..ROUNDS {
         let mut gradient = Vector5::zeros();
@@ -112,11 +152,13 @@ pub(super) fn likeliest(stretches: &[Stretch], radius: f64, sigma: f64) -> Optio
     None
 }
 
-fn tests(s: &Stretch, radius: f64) -> Vec<Test> {
+fn tests(s: &Stretch, radius: f64, per_radius: f64) -> Vec<Test> {
     let count = s.times.len();
+    // the widest is as long as the stretch
+    let radius = radius.min(0.5 * (s.times[count - 1] - s.times[0]));
     let (start, end) = (s.times[0] + radius, s.times[count - 1] - radius);
     let room = (end - start).max(0.0);
-    let centres = (room * PER_RADIUS / radius).floor() as usize + 1;
+    let centres = (room * per_radius / radius).floor() as usize + 1;
     let weight = |i: usize| {
         let next = s.times[(i + 1).min(count - 1)];
         let last = s.times[i.saturating_sub(1)];
@@ -138,6 +180,41 @@ fn tests(s: &Stretch, radius: f64) -> Vec<Test> {
             Test { first, values, slopes }
         })
         .collect()
+}
+
+/// The leading right singular vectors of the test functions, as combinations of them.
+fn leading(tests: &[Test]) -> Vec<Combination> {
+    let gram = DMatrix::from_fn(tests.len(), tests.len(), |m, l| {
+        let (one, two) =
+            if tests[m].first < tests[l].first { (&tests[m], &tests[l]) } else { (&tests[l], &tests[m]) };
+        let shared = one.values.iter().skip(two.first - one.first).zip(&two.values);
+        shared.map(|(a, b)| a * b).sum::<f64>()
+    });
+    let eigen = gram.symmetric_eigen();
+    let mut order: Vec<usize> = (0..tests.len()).collect();
+    order.sort_by(|a, b| eigen.eigenvalues[*b].total_cmp(&eigen.eigenvalues[*a]));
+    let singular = |k: usize| eigen.eigenvalues[k].max(0.0).sqrt();
+    order.truncate(corner(order.iter().map(|k| singular(*k))).max(FEWEST).min(tests.len()));
+    order.iter().map(|&k| eigen.eigenvectors.column(k).iter().map(|u| u / singular(k)).collect()).collect()
+}
+
+/// How many singular values lie before the corner of their sums: two straight lines through the first, that and the last are nearest to
+/// the sums.
+fn corner(singular: impl Iterator<Item = f64>) -> usize {
+    let mut sum = 0.0;
+    let sums: Vec<f64> = singular
+        .map(|value| {
+            sum += value;
+            sum
+        })
+        .collect();
+    let off = |from: usize, to: usize| -> f64 {
+        let slope = (sums[to] - sums[from]) / (to - from).max(1) as f64;
+        (from..=to).map(|i| (1.0 - (sums[from] + slope * (i - from) as f64) / sums[i]).abs()).sum()
+    };
+    let last = sums.len() - 1;
+    let all = (0..=last).map(|k| off(0, k) + off(k, last));
+    1 + all.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(last, |(k, _)| k)
 }
 
 fn equations(s: &Stretch, tests: &[Test]) -> Vec<[f64; 6]> {
@@ -234,6 +311,40 @@ impl Banded {
             let place = self.place(row, column);
             self.entries[place] += value;
         }
+    }
+
+    /// The covariance of combinations of the test functions, the whole lower half.
+    fn of(&self, combinations: &[Combination]) -> Banded {
+        let (size, count) = (3 * combinations.len(), self.size / 3);
+        // the lower half with half of the diagonal, times the combinations from the left and then from the right
+        let mut left = vec![vec![0.0; self.size]; size];
+        for row in 0..self.size {
+            let first = row.saturating_sub(self.width);
+            let entries = &self.entries[self.place(row, first)..self.place(row, row)];
+            let diagonal = 0.5 * self.entries[self.place(row, row)];
+            for (a, combination) in combinations.iter().enumerate() {
+                let (factor, sums) = (combination[row / 3], &mut left[3 * a + row % 3]);
+                sums[first..row].iter_mut().zip(entries).for_each(|(sum, entry)| *sum += factor * entry);
+                sums[row] += factor * diagonal;
+            }
+        }
+        let across: Vec<Vec<f64>> = (0..count).map(|k| combinations.iter().map(|c| c[k]).collect()).collect();
+        let mut result = Banded::zeros(size, size - 1);
+        for (row, left) in left.iter().enumerate() {
+            let mut sums = [0; 3].map(|_| vec![0.0; combinations.len()]);
+            for (k, coefficients) in across.iter().enumerate() {
+                for (q, sums) in sums.iter_mut().enumerate() {
+                    let factor = left[3 * k + q];
+                    sums.iter_mut().zip(coefficients).for_each(|(sum, c)| *sum += factor * c);
+                }
+            }
+            for column in 0..size {
+                let half = sums[column % 3][column / 3];
+                let (low, high) = (row.min(column), row.max(column));
+                result.add(high, low, if low == high { 2.0 * half } else { half });
+            }
+        }
+        result
     }
 
     /// `None` where the matrix is not positive.

@@ -49,3 +49,18 @@ pub(crate) fn physical(x: Coordinates) -> Option<Coordinates> {
     let share = if moments[0] < SMALLEST { (third - SMALLEST) / (third - moments[0]) } else { 1.0 };
     Some(x * share)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_drawn_inwards_stops_at_the_least_moment() {
+        let far = Coordinates::new(0.3, 0.9, 0.2, -0.4, 0.1);
+        for x in [far, far * 0.01] {
+            let (moments, _) = eigen(crate::physical::coordinates::tensor(&physical(x).unwrap()));
+            let (own, _) = eigen(crate::physical::coordinates::tensor(&x));
+            assert!((moments[0] - own[0].max(SMALLEST)).abs() < 1e-15, "{moments}");
+        }
+    }
+}

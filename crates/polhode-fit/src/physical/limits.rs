@@ -1,6 +1,6 @@
 //! What is known of the moments beforehand, and whether it agrees with itself and with the physical law.
 
-use crate::thresholds::limits::{ANYWHERE, MET, PUSHES, ROOM, ROUNDS};
+use crate::thresholds::limits::{MET, PUSHES, ROOM, ROUNDS};
 use nalgebra::Vector3;
 
 use crate::error::{Clash, FitError};
@@ -91,10 +91,10 @@ pub(crate) fn feasible(limits: &[Limit]) -> Result<(), FitError> {
             conditions.nonnegative(&six(&pair(v, v), 0.0), LARGEST_SHARE - v.norm_squared() / 3.0);
         }
         for k in 0..6 {
-            // any physical tensor lies well inside; t below 0 only means room to spare
+            // any physical tensor lies well inside, and so does any t, since limits and moments are shares
             for sign in [1.0, -1.0] {
                 let unit: [f64; 6] = core::array::from_fn(|i| if i == k { sign } else { 0.0 });
-                conditions.nonnegative(&unit, if k == 5 && sign > 0.0 { ANYWHERE } else { 1.0 });
+                conditions.nonnegative(&unit, 1.0);
             }
         }
         let (answer, duals) = conditions

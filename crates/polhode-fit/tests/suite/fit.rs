@@ -289,12 +289,14 @@ fn scale_from_what_is_known_besides() {
     let body = j * 7.0;
     let record = Record::from_samples(&times, &rates).unwrap();
     let omega = Vector3::new(0.3, -0.8, 0.6);
-    let axis = Vector3::new(0.0, 3.0, 0.0);
+    // of any length
+    let [axis, short] = [3.0, 0.3].map(|length| Vector3::new(0.0, length, 0.0));
     for known in [
         Known::Trace(7.0),
         Known::Momentum((body * omega).norm()),
         Known::TwiceEnergy(omega.dot(&(body * omega))),
         Known::Moment { axis, value: body[(1, 1)] },
+        Known::Moment { axis: short, value: body[(1, 1)] },
     ] {
         let estimate = fit(&record, &Settings::default().with_known(known)).unwrap();
         let e = entries(&(estimate.inertia.unwrap().tensor() - body));

@@ -210,17 +210,21 @@ fn what_attitudes_do_not_tell_is_refused_with_its_numbers() {
     let measured: Vec<UnitQuaternion<f64>> = fast.iter().map(spin).collect();
     let fault = refused(&Poses::new("spin.csv", &fast, &measured).unwrap());
     let text = fault.to_string();
-    assert!(matches!(fault, PoseFault::HalfTurn { sample: 1, .. }) && text.contains("3.000 rad"), "{text}");
+    assert!(matches!(fault, PoseFault::HalfTurn { sample: 1, step: 1.0, .. }), "{text}");
+    assert!(text.contains("3.000 rad"), "{text}");
     assert!(text.contains("3.283 rad"), "{text}");
     // a quaternion of norm zero, as a tracker writes one that sees nothing: normalised it is not finite
     for nothing in [
         UnitQuaternion::from_quaternion(Quaternion::new(0.0, 0.0, 0.0, 0.0)),
         UnitQuaternion::new_unchecked(Quaternion::new(0.0, 0.0, 0.0, 0.0)),
     ] {
-        let mut blind = measured.clone();
-        blind[4] = nothing;
-        let error = Poses::new("spin.csv", &fast, &blind).unwrap_err();
-        assert!(matches!(error, PosesError::NoAttitude { sample: 5, .. }), "{error}");
+        for k in [0, 4] {
+            let mut blind = measured.clone();
+            blind[k] = nothing;
+            let error = Poses::new("spin.csv", &fast, &blind).unwrap_err();
+            let PosesError::NoAttitude { sample, .. } = error else { panic!("{error}") };
+            assert_eq!(sample, k + 1);
+        }
     }
     // no turn at all
     let mut random = Random::new(1);
@@ -245,7 +249,25 @@ fn what_attitudes_do_not_tell_is_refused_with_its_numbers() {
     }
     // too few
     let toss = toss(ASYMMETRIC, 1.0, 5.0, 1e-3, 5);
-    assert!(matches!(fit_poses(&toss.poses(), &Settings::default()), Err(FitError::TooFewSamples { .. })));
+    let error = fit_poses(&toss.poses(), &Settings::default()).unwrap_err();
+    let FitError::TooFewSamples { needed, .. } = error else { panic!("{error}") };
+    // and just enough
+    let motion = FreeMotion::from_omega(&toss.body, UnitQuaternion::identity(), Vector3::new(0.3, 1.0, 0.4));
+    let times: Vec<f64> = (0..needed).map(|i| i as f64).collect();
+    let measured = attitudes(&motion.unwrap(), &times, 1e-6, &mut random);
+    fit_poses(&Poses::new("few", &times, &measured).unwrap(), &Settings::default()).unwrap();
+}
+
+/// What attitudes at given times tell of a motion does not depend on when the clock was started.
+#[test]
+fn the_bound_knows_no_origin_of_time() {
+    let body = Inertia::from_moments(ASYMMETRIC).unwrap();
+    let bound = |start: f64| {
+        let times: Vec<f64> = (0..200).map(|i| start + 0.1 * f64::from(i)).collect();
+        foreseen_attitude_bound(&body, Vector3::new(0.3, 1.0, 0.4), &times, 0.01).unwrap()
+    };
+    let (one, other) = (bound(0.0), bound(7.0));
+    assert!((one - other).norm() < 1e-9 * one.norm(), "{one}{other}");
 }
 
 #[test]

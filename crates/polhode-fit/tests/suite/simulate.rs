@@ -140,6 +140,8 @@ fn the_sensor_errs_as_it_is_told_to() {
         noisy.iter().zip(&spiked).map(|(a, b)| b - a).filter(|d| d.norm() > 0.0).collect();
     assert!((40..=120).contains(&hit.len()), "{} spikes", hit.len()); // 80 ± 9
     assert!(hit.iter().all(|d| (d.norm() - 50.0).abs() < 1e-12 && (d.amax() - 50.0).abs() < 1e-12));
+    // upwards and downwards on every axis
+    assert!((0..3).all(|k| hit.iter().any(|d| d[k] > 49.0) && hit.iter().any(|d| d[k] < -49.0)));
     let noise: Vec<Vector3<f64>> = exact.iter().zip(&noisy).map(|(a, b)| b - a).collect();
     let variance = noise.iter().map(|n| n.norm_squared()).sum::<f64>() / (3.0 * noise.len() as f64);
     assert!((variance / 0.01 - 1.0).abs() < 4.0 * (2.0_f64 / 12_000.0).sqrt(), "{variance}");

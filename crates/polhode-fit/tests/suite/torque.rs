@@ -5,7 +5,7 @@ use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_fit::{
     Disturbances, Estimate, FitError, Gyroscope, Known, Record, Segment, SensorPriors, Settings, TorqueModel,
-    fit, simulate_with,
+    TorqueNoise, fit, simulate_with,
 };
 
 use crate::measured::torques::{bound, motion};
@@ -97,6 +97,30 @@ fn drag_is_found_and_fitted_at_its_bound() {
         assert!(trials.covered >= 19, "{} of 24", trials.covered);
         assert!(trials.models.iter().all(|m| *m == TorqueModel::Drag), "{:?}", trials.models);
     }
+}
+
+/// Drag that differs from axis to axis by more than a common one explains, and torque noise that is given: in any unit of time.
+#[test]
+fn unequal_drags_are_chosen_and_a_given_torque_noise_has_its_unit() {
+    let body = Inertia::from_moments([1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6]).unwrap();
+    let times = sampled(20, 40);
+    let drag = Disturbances::default().with_drag(Vector3::new(2e-3, 7e-3, 1.4e-2));
+    let gyroscope = Gyroscope::default().with_noise(1e-3);
+    let omega = Vector3::new(0.5, 0.3, 0.8);
+    let rates = simulate_with(&body, omega, &times, &drag, &gyroscope, &mut Random::new(2)).unwrap();
+    let chosen = fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap();
+    assert_eq!(chosen.torque.model, TorqueModel::Drag3);
+    let given = |factor: f64| {
+        let times: Vec<f64> = times.iter().map(|t| t / factor).collect();
+        let rates: Vec<_> = rates.iter().map(|w| w * factor).collect();
+        let noise = TorqueNoise::Given(1e-6 * factor * factor * factor);
+        fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default().with_torque_noise(noise))
+            .unwrap()
+    };
+    let (one, other) = (given(1.0), given(16.0));
+    assert!((one.shape.tensor() - other.shape.tensor()).amax() < 1e-9);
+    assert!((0..3).all(|k| (one.sigma_principal[k] / other.sigma_principal[k] - 1.0).abs() < 1e-6));
+    assert!(one.sigma_principal[0] > 2.0 * chosen.sigma_principal[0]);
 }
 
 /// Without any drag half of the records would have it drive the body: its coefficient is then zero, with the deviation of

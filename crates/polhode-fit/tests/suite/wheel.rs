@@ -33,7 +33,7 @@ fn spun(
     record
 }
 
-/// Errors over their deviations scatter by 1, over 60 records to √(1/120) = 0.09; 95 % of them lie within 1.96, to 0.028.
+/// Errors over their deviations scatter by 1, over 60 records to √(1/120) = 0.09, over all to 0.046; 95 % of them lie within 1.96, to 0.028.
 #[test]
 fn a_wheel_is_calibrated_to_its_deviation() {
     let mut random = Random::new(81);
@@ -46,6 +46,7 @@ fn a_wheel_is_calibrated_to_its_deviation() {
     let with_drag = Settings::default().with_torque(TorqueModel::Drag);
     let sensor = SensorPriors::default().with_offset(0.02);
     let with_offset = Settings::default().with_sensor(sensor);
+    let mut all = Vec::new();
     for (name, acting, gyroscope, settings) in [
         ("free", &free, &quiet, &plain),
         ("drag", &drag, &quiet, &with_drag),
@@ -65,7 +66,10 @@ fn a_wheel_is_calibrated_to_its_deviation() {
         println!("{name}: errors over deviations {scatter:.3}, coverage {covered} of {count}");
         assert!((0.63..1.37).contains(&scatter), "{name}: {scatter}");
         assert!(covered >= 50, "{name}: {covered}");
+        all.push(scatter * scatter);
     }
+    let all = (all.iter().sum::<f64>() / all.len() as f64).sqrt();
+    assert!((0.82..1.18).contains(&all), "{all}");
 }
 
 #[test]

@@ -7,7 +7,9 @@ use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_files::error::{Error, unexpected};
-use polhode_fit::{FitError, Record, Settings, fit, foreseen_bound, simulate};
+use polhode_fit::{
+    Disturbances, FitError, Gyroscope, Record, Settings, TorqueModel, fit, foreseen_bound_with, simulate_with,
+};
 use polhode_pages::figure::{Curve, Figure};
 use polhode_pages::table::{Cell, Column, Table};
 use polhode_rivals::{ATTITUDE_NOISE, RIVALS, Rival};
@@ -24,8 +26,15 @@ const SHOWN: f64 = NOISES[1];
 /// Their columns: name and heading.
 const NOISE_COLUMNS: [(&str, &str); 3] =
     [("noise_0.001", "noise 0.001"), ("noise_0.01", "noise 0.01"), ("noise_0.1", "noise 0.1")];
-const BODIES: [(&str, [f64; 3]); 3] =
-    [("asymmetric", [1.0, 2.0, 2.6]), ("near-symmetric", [1.0, 2.0, 2.1]), ("planar", [1.0, 2.0, 3.0])];
+/// Names, principal moments, and drag in 1/s, which is tried at the noise of the conclusion alone.
+const BODIES: [(&str, [f64; 3], f64); 4] = [
+    ("asymmetric", [1.0, 2.0, 2.6], 0.0),
+    ("near-symmetric", [1.0, 2.0, 2.1], 0.0),
+    ("planar", [1.0, 2.0, 3.0], 0.0),
+    ("asymmetric, drag", [1.0, 2.0, 2.6], 0.01),
+];
+/// One record of so many, but never fewer than two, is given to WENDy, which takes a hundred times as long as a fit.
+const OF_WENDY: u64 = 12;
 const OWN: &str = "weak form, denoised";
 /// Streams of random numbers for those attitudes, apart from those of the records.
 const ATTITUDES: u64 = 1 << 48;
@@ -37,28 +46,36 @@ struct Trial {
     physical: bool,
     /// Broke off for another reason than a record that says too little.
     broken: bool,
-    /// By rival and choice.
+    /// By rival and choice; no choice where a rival was not asked.
     rivals: Vec<Vec<Option<Outcome>>>,
 }
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let trials = context.scale.pick(2, 3, 170);
     let seconds = context.scale.pick(10, 60, 60);
+    let cells = (0..BODIES.len()).flat_map(|body| (0..NOISES.len()).map(move |noise| (body, noise)));
     let cells: Vec<(usize, usize)> =
-        (0..BODIES.len()).flat_map(|body| (0..NOISES.len()).map(move |noise| (body, noise))).collect();
+        cells.filter(|&(body, noise)| BODIES[body].2 == 0.0 || NOISES[noise] == SHOWN).collect();
     let parts = cells.iter().flat_map(|&(body, noise)| (0..trials).map(move |k| (body, noise, k))).collect();
     let results = context.in_parallel(parts, |(body, noise, k): (usize, usize, u64)| {
         // the same motions at each noise, so that columns compare
         // at every noise the same bodies, starts and deviates
         let stream = ((body as u64) << 32) + k;
-        trial(BODIES[body].1, NOISES[noise], seconds, stream)
+        let asked = |rival: Rival| match rival {
+            Rival::Wendy => BODIES[body].2 == 0.0 && k < trials.div_ceil(OF_WENDY).max(2),
+            Rival::OutputError => true,
+            Rival::OutputErrorWithDrag => BODIES[body].2 > 0.0,
+            _ => BODIES[body].2 == 0.0,
+        };
+        trial(BODIES[body], NOISES[noise], seconds, stream, asked)
     });
     let results = results.into_iter().collect::<Result<Vec<Trial>, Error>>()?;
 
     let mut table = Table::new(
         "efficiency",
         format!(
-            "Error over the Cramer-Rao bound, {trials} records of {seconds} s at 100 Hz, random axes and starts."
+            "Error over the Cramer-Rao bound, {trials} records of {seconds} s at 100 Hz, of which WENDy has {}; random axes and starts.",
+            trials.div_ceil(OF_WENDY).max(2).min(trials)
         ),
         columns(),
     );
@@ -75,10 +92,10 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let mut curves: Vec<Curve> = Vec::new();
     for (&(body, noise), cell) in cells.iter().zip(results.chunks(trials as usize)) {
         let (name, level) = (BODIES[body].0, NOISES[noise]);
-        let likelihood: Vec<Option<Outcome>> = match RIVALS.iter().position(|r| *r == Rival::OutputError) {
-            Some(place) => cell.iter().map(|t| t.rivals[place][0]).collect(),
-            None => Vec::new(),
-        };
+        // the last that was asked is maximum likelihood of the right law
+        let likeliest =
+            |t: &Trial| t.rivals.iter().rev().find_map(|choices| choices.first().copied()).flatten();
+        let likelihood: Vec<Option<Outcome>> = cell.iter().map(likeliest).collect();
         let own: Vec<Option<Outcome>> = cell.iter().map(|t| t.own).collect();
         let summary = Summary::new(&own, &likelihood);
         let broken = cell.iter().filter(|t| t.broken).count();
@@ -113,11 +130,16 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             failures.push(format!("{name}, noise {level}: {over:.3} of the bound, outside {limits:?}"));
         }
         for (place, rival) in RIVALS.into_iter().enumerate() {
+            let asked: Vec<&Trial> = cell.iter().filter(|t| !t.rivals[place].is_empty()).collect();
+            if asked.is_empty() {
+                continue;
+            }
+            let likelihood: Vec<Option<Outcome>> = asked.iter().map(|t| likeliest(t)).collect();
             let by_choice = (0..rival.choices())
-                .map(|k| cell.iter().map(|t| t.rivals[place][k]).collect::<Vec<_>>())
+                .map(|k| asked.iter().map(|t| t.rivals[place][k]).collect::<Vec<_>>())
                 .map(|outcomes| Summary::new(&outcomes, &likelihood));
             let Some((k, summary)) = best(by_choice) else { continue };
-            let without = (cell.len() - summary.answered) as u64;
+            let without = (asked.len() - summary.answered) as u64;
             table.push(summary.row(name, rival.name(), &rival.choice(k), level, without));
             point(rival.name(), &summary);
         }
@@ -172,7 +194,13 @@ fn square(e: &SMatrix<f64, 6, 1>, c: &SMatrix<f64, 6, 6>) -> Option<f64> {
     Some(e.dot(&regular.cholesky()?.solve(e)))
 }
 
-fn trial(moments: [f64; 3], noise: f64, seconds: usize, stream: u64) -> Result<Trial, Error> {
+fn trial(
+    (_, moments, drag): (&str, [f64; 3], f64),
+    noise: f64,
+    seconds: usize,
+    stream: u64,
+    asked: impl Fn(Rival) -> bool,
+) -> Result<Trial, Error> {
     let mut random = Random::new(SEED).stream(stream);
     let (w, v) = (random.normal(), random.normal_vector());
     let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, v.x, v.y, v.z)).to_rotation_matrix();
@@ -182,10 +210,17 @@ fn trial(moments: [f64; 3], noise: f64, seconds: usize, stream: u64) -> Result<T
     let failed = |error: &dyn std::fmt::Display| Error::Failed(format!("random stream {stream}: {error}"));
     let body = Inertia::from_tensor(j).map_err(|error| failed(&error))?;
     let times: Vec<f64> = (0..=100 * seconds).map(|i| i as f64 / 100.0).collect();
-    let rates = simulate(&body, omega, &times, noise, &mut random).map_err(|error| failed(&error))?;
+    let (acting, sensor) =
+        (Disturbances::default().with_relative_drag(drag), Gyroscope::default().with_noise(noise));
+    let rates =
+        simulate_with(&body, omega, &times, &acting, &sensor, &mut random).map_err(|error| failed(&error))?;
     let record = Record::from_samples(&times, &rates).map_err(|error| failed(&error))?;
 
-    let bound = foreseen_bound(&body, omega, &times, noise).ok_or_else(|| failed(&"no Cramér–Rao bound"))?;
+    let (model, coefficients): (_, &[f64]) =
+        if drag > 0.0 { (TorqueModel::Drag, &[drag]) } else { (TorqueModel::None, &[]) };
+    let known = Settings::default().with_torque(model);
+    let bound = foreseen_bound_with(&body, omega, &times, noise, &known, coefficients)
+        .ok_or_else(|| failed(&"no Cramér–Rao bound"))?;
     let over_bound = |shape: Matrix3<f64>| square(&entries(&(shape - j)), &bound);
 
     let (mut own, mut broken, mut physical) = (None, false, true);
@@ -203,7 +238,7 @@ fn trial(moments: [f64; 3], noise: f64, seconds: usize, stream: u64) -> Result<T
     let rivals = RIVALS
         .iter()
         .map(|rival| {
-            (0..rival.choices())
+            (0..if asked(*rival) { rival.choices() } else { 0 })
                 .map(|k| {
                     let answer = rival.answer(k, &record, noise, &attitudes)?;
                     let over_bound = over_bound(answer.shape)?;
@@ -239,7 +274,7 @@ fn columns() -> Vec<Column> {
         Column::new(
             "body",
             "",
-            "principal moments: asymmetric 1, 2, 2.6; near-symmetric 1, 2, 2.1; planar 1, 2, 3",
+            "principal moments: asymmetric 1, 2, 2.6; near-symmetric 1, 2, 2.1; planar 1, 2, 3; drag: of 1 % of the momentum a second",
         ),
         Column::new("estimator", "", "formulation"),
         Column::new("choice", "", "what serves the estimator best at this noise, of several tried"),
