@@ -77,7 +77,7 @@ pub(super) fn run(context: &Context, report: &mut Report) -> Result<(), Error> {
             let error = errors[((errors.len() - 1) as f64 * share).round() as usize];
             (error <= LOST).then(|| rounded(error))
         };
-        let lost = errors.iter().filter(|error| !(**error <= LOST)).count() as u64;
+        let lost = errors.iter().filter(|error| **error > LOST).count() as u64;
         let steps = (span / h) as u64;
         table.push(row![method.name(), *h, steps, share(0.5), share(0.1), share(0.9), lost]);
     }

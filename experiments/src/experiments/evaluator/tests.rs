@@ -40,6 +40,8 @@ fn every_form_is_the_motion() {
                 for t in [-40.0, -1.0, 0.0, 0.5, 3.0, 77.0] {
                     let error = errors((motion(t), Vec3(omega)), reference.at(t))[0] * UNIT;
                     assert!(error < 1e-12, "{} {start:?} {t}: {error:e}", form.name);
+                    let backward = errors((motion(-t), Vec3(omega)), reference.at(t))[0] * UNIT;
+                    assert!(t == 0.0 || backward > 1e-3, "{} {start:?} {t}: {backward:e}", form.name);
                 }
             }
         }
