@@ -256,10 +256,12 @@ pub(super) fn run(context: &Context, report: &mut Report) -> Result<(), Error> {
 
 fn columns_of_spreads() -> [Column; 6] {
     [
-        Column::new("attitude_largest", "u", "largest angle to the exact attitude, rad over 2^-53").heading("attitude, largest"),
+        Column::new("attitude_largest", "u", "largest angle to the exact attitude, rad over 2^-53")
+            .heading("attitude, largest"),
         Column::new("attitude_9999", "u", "what one in 10000 exceeds").heading("99.99 %"),
         Column::new("attitude_median", "u", "what half of them exceed").heading("median"),
-        Column::new("omega_largest", "u", "largest |omega - exact| / |exact| over 2^-53").heading("omega, largest"),
+        Column::new("omega_largest", "u", "largest |omega - exact| / |exact| over 2^-53")
+            .heading("omega, largest"),
         Column::new("omega_9999", "u", "what one in 10000 exceeds").heading("99.99 %"),
         Column::new("omega_median", "u", "what half of them exceed").heading("median"),
     ]
@@ -281,8 +283,12 @@ fn table_of_regimes(tallies: &Tallies, all: &Tally) -> Table {
     ];
     columns.extend(columns_of_spreads());
     columns.extend([
-        Column::new("compared", "", "points at which the reference, the theta form in double-double, is compared with Carlson's")
-            .hidden(),
+        Column::new(
+            "compared",
+            "",
+            "points at which the reference, the theta form in double-double, is compared with Carlson's",
+        )
+        .hidden(),
         Column::new("reference_attitude", "u", "largest angle between the two").hidden(),
         Column::new("reference_omega", "u", "the same of the angular velocity").hidden(),
     ]);
@@ -299,17 +305,27 @@ fn table_of_regimes(tallies: &Tallies, all: &Tally) -> Table {
         let [a, b, c, d, e, f] = numbers(tally);
         let [attitude, omega] = tally.apart;
         table.push(row![
-            shape, form, tally.motions, tally.points, a, b, c, d, e, f, tally.compared, attitude, omega
+            shape,
+            form,
+            tally.motions,
+            tally.points,
+            a,
+            b,
+            c,
+            d,
+            e,
+            f,
+            tally.compared,
+            attitude,
+            omega
         ]);
     }
     table
 }
 
 fn table_of_bands(tallies: &Tallies) -> Table {
-    let mut columns = vec![
-        Column::new("turned", "rad", "|omega| t at most"),
-        Column::new("points", "", "states compared"),
-    ];
+    let mut columns =
+        vec![Column::new("turned", "rad", "|omega| t at most"), Column::new("points", "", "states compared")];
     columns.extend(columns_of_spreads());
     let mut table = Table::new("turned", "The same by how far the body has turned.", columns);
     for (k, tally) in tallies.bands.iter().enumerate() {
@@ -343,9 +359,7 @@ fn table_of_worst(tallies: &Tallies) -> Table {
             let Some((Start { moments: i, omega: w }, t)) = spread.worst else { continue };
             let [shape, form] =
                 [Shape::ALL[k / Form::ALL.len()].name(), Form::ALL[k % Form::ALL.len()].name()];
-            table.push(row![
-                shape, form, *quantity, spread.largest, i[0], i[1], i[2], w[0], w[1], w[2], t
-            ]);
+            table.push(row![shape, form, *quantity, spread.largest, i[0], i[1], i[2], w[0], w[1], w[2], t]);
         }
     }
     table

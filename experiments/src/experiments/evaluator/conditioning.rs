@@ -36,7 +36,8 @@ pub(super) fn run(report: &mut Report) -> Result<(), Error> {
         vec![
             Column::new("motion", "", "kind of motion"),
             Column::new("turned", "rad", "|omega| t"),
-            Column::new("by_omega", "u", "angle by changes of the three components of omega at the start").heading("by omega"),
+            Column::new("by_omega", "u", "angle by changes of the three components of omega at the start")
+                .heading("by omega"),
             Column::new("by_moments", "u", "the same of the three moments").heading("by the moments"),
             Column::new("by_t", "u", "the same of the time").heading("by t"),
             Column::new("evaluation", "u", "attitude error of the evaluation there"),

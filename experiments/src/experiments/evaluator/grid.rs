@@ -33,9 +33,8 @@ impl Shape {
 
     /// Three moments in ascending order, the largest about 1; `nearness` from 0 to 1 is how far the approach has gone.
     fn moments(self, nearness: f64, random: &mut Random) -> [f64; 3] {
-        let small = |decades: f64, random: &mut Random| {
-            libm::exp10(-1.0 - decades * nearness - random.uniform())
-        };
+        let small =
+            |decades: f64, random: &mut Random| libm::exp10(-1.0 - decades * nearness - random.uniform());
         match self {
             Shape::Generic => {
                 let smallest = random.between(0.1, 0.9);
@@ -45,7 +44,11 @@ impl Shape {
             }
             Shape::NearSymmetric => {
                 let (other, split) = (random.between(0.55, 0.95), small(13.0, random));
-                if random.below(2) == 0 { [other, 1.0 - split, 1.0] } else { [other, other * (1.0 + split), 1.0] }
+                if random.below(2) == 0 {
+                    [other, 1.0 - split, 1.0]
+                } else {
+                    [other, other * (1.0 + split), 1.0]
+                }
             }
             Shape::NearSphere => {
                 let split = small(13.0, random);
@@ -140,11 +143,8 @@ fn momentum(i: [f64; 3], (energy, largest): (Energy, bool), nearness: f64, rando
             // A², B² and C² over G²
             let kappa = k2 * (i[b] - i[a]) / (i[c] - i[b]);
             let below = i[a] + kappa * i[c];
-            let amplitudes = [
-                i[a] / below,
-                i[b] * k2 * (i[c] - i[a]) / ((i[c] - i[b]) * below),
-                i[c] * kappa / below,
-            ];
+            let amplitudes =
+                [i[a] / below, i[b] * k2 * (i[c] - i[a]) / ((i[c] - i[b]) * below), i[c] * kappa / below];
             let [amp_a, amp_b, amp_c] = amplitudes.map(f64::sqrt);
             m[a] = amp_a * (cos * cos + complement * sin * sin).sqrt();
             (m[b], m[c]) = (amp_b * sin, amp_c * cos);

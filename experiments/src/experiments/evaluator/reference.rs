@@ -164,15 +164,18 @@ impl Reference {
         let (z, w, psi) = if matches!(self.form, Form::End | Form::Direct) {
             let (s, c) = (rest * Dd::TAU).sin_cos();
             let (even, odd) = harmonics::<-1>(s, c);
-            ([dot(self.z[0], even[0]), dot(self.z[1], even[1])], [dot(self.w[0], odd[1]), dot(self.w[1], odd[0])], psi)
+            (
+                [dot(self.z[0], even[0]), dot(self.z[1], even[1])],
+                [dot(self.w[0], odd[1]), dot(self.w[1], odd[0])],
+                psi,
+            )
         } else {
             let grown = (rest * self.width).exp();
             let shrunk = Dd::ONE / grown;
             let (s, c) = ((grown - shrunk) * 0.5, (grown + shrunk) * 0.5);
             let (_, odd) = harmonics::<1>(s, c);
-            let part = |k: [Dd; TERMS], f: [Dd; TERMS]| {
-                (0..self.terms).fold(Dd::ZERO, |sum, n| sum + k[n] * f[n])
-            };
+            let part =
+                |k: [Dd; TERMS], f: [Dd; TERMS]| (0..self.terms).fold(Dd::ZERO, |sum, n| sum + k[n] * f[n]);
             let sign = if whole.rem_euclid(2.0) == 0.0 { 1.0 } else { -1.0 };
             (
                 [part(self.z[0], odd[0]), part(self.z[1], odd[1])],

@@ -45,8 +45,9 @@ pub(super) fn swing(start: &Start) -> Motion {
     let n = -(ia * (ic - ib)) / (ic * (ib - ia));
     let factor = curve.norm * b / (a * c) * n / 3.0;
     let per_half = 2.0 * factor * curve.complete_third_kind(n) - std::f64::consts::PI;
-    let periodic =
-        move |curve: &Curve, [sn, cn]: [f64; 2]| factor * curve.third_kind([sn, cn], n) - libm::atan2(b * sn, c * cn);
+    let periodic = move |curve: &Curve, [sn, cn]: [f64; 2]| {
+        factor * curve.third_kind([sn, cn], n) - libm::atan2(b * sn, c * cn)
+    };
     let at_start = curve.at(0.0);
     let (halves, offset) = (at_start.halves, periodic(&curve, at_start.rest));
     let back = curve.swing(curve.start).conjugate();

@@ -18,10 +18,10 @@ use polhode_files::error::Error;
 use polhode_pages::table::{Column, Table, row};
 
 use self::plain::Curve;
+use super::SEED;
 use super::bound::{UNIT, errors, library, motion_of};
 use super::grid::Start;
 use super::reference::Reference;
-use super::SEED;
 use crate::experiment::{Context, Report};
 use crate::statistics::rounded;
 

@@ -32,11 +32,7 @@ pub(super) fn motion(start: &Start) -> Motion {
     let (from_1, from_3) = (square - twice_energy * i1, twice_energy * i3 - square);
     let rate = (i32 * from_1 / (i1 * i2 * i3)).sqrt();
     let rate = if i3 < i1 { -rate } else { rate };
-    let scales = [
-        (from_3 / (i1 * i31)).sqrt(),
-        (from_3 / (i2 * i32)).sqrt(),
-        (from_1 / (i3 * i31)).sqrt(),
-    ];
+    let scales = [(from_3 / (i1 * i31)).sqrt(), (from_3 / (i2 * i32)).sqrt(), (from_1 / (i3 * i31)).sqrt()];
     let k2 = i21 * from_3 / (i32 * from_1);
     let modulus = Modulus::new(1.0 - k2);
     let quarter = modulus.quarter_period();
@@ -90,8 +86,7 @@ pub(super) fn motion(start: &Start) -> Motion {
     let back = turn(0.0, theta, psi).conjugate();
     Box::new(move |t| {
         let [sn, cn, dn] = jacobi(rate * t + phase);
-        let (theta, psi) =
-            angles([i1 * scales[0] * cn, i2 * scales[1] * sn, scales[2] * dn / slope]);
+        let (theta, psi) = angles([i1 * scales[0] * cn, i2 * scales[1] * sn, scales[2] * dn / slope]);
         let periods = (t / period).floor();
         let phi = slope * t + (periods * over_period + integral(t - periods * period));
         let q = back * turn(phi, theta, psi);

@@ -64,7 +64,8 @@ pub(super) fn motion(start: &Start) -> Motion {
         let psi = a1 + a2 * t - argument(&curve, t);
         let about = Rotation3::from_axis_angle(&Vector3::z_axis(), psi);
         let turn = first * about.matrix() * frame(&curve, curve.at(t).momentum).transpose();
-        let q: Quat<f64> = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turn)).into();
+        let q: Quat<f64> =
+            UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turn)).into();
         // from 1, 2, 3 to a, b, c
         curve.turn(Quat::new(q.w, Vec3([q.v[2], -q.v[1], q.v[0]])))
     })
