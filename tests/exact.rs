@@ -229,3 +229,44 @@ fn a_tensor_as_a_rotation_leaves_it_spins_on() {
         assert!((found - expected).abs() < 1e-15, "{found} {expected}");
     }
 }
+
+/// What is compared in a case of [`WORST`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Of {
+    /// The angle, rad.
+    Attitude,
+    /// |ω − exact| over |exact|.
+    Omega,
+}
+
+/// The worst of 1e8 points of the grid of the experiment `evaluator`: errors in units of 2⁻⁵³, moments, ω in rad/s, t in s.
+const WORST: [(Of, f64, [f64; 3], [f64; 3], f64); 8] = [
+    (Of::Attitude, 9.423339961475728, [0.9999983374527797, 1.0, 2.079367061378367e-6], [0.9861542601508156, 0.1658403112596736, -0.1482901175670908], 12.18860004244707),
+    (Of::Attitude, 8.275816002617495, [1.0, 0.1957120291019394, 0.8761829683727426], [0.9521595524895293, 0.9100696554815975, -0.28342406119534136], -5141.343438528619),
+    (Of::Attitude, 7.969121822731102, [0.9999792027875967, 1.0, 0.9999987422186877], [-0.24176290095827, -0.9528806996523087, -0.18322551007294535], -674873850001.8234),
+    (Of::Attitude, 7.718986942532276, [1.0, 0.9094103669894413, 0.983197799276149], [0.9058071484802015, 0.4532602968148284, -0.09967936791598336], 7213736.24532888),
+    (Of::Omega, 11.880545486823541, [1.0, 0.5803335456310524, 0.5803335439845774], [7.487208755340487e-5, -0.654224284791898, -1.5941223661164254], -1.6507483105400031),
+    (Of::Omega, 9.317306257079517, [0.999798781767928, 0.9998153650241364, 1.0], [0.8979765367028606, 0.3524079752500761, -0.2642292398471462], 133.43609654960943),
+    (Of::Omega, 7.887717138221076, [0.9999999993605027, 0.9999999992848773, 1.0], [0.24201131983541765, 0.9698152385553823, 0.029814854643304262], -129.15303308654077),
+    (Of::Omega, 7.862855250673414, [0.6759194298881781, 0.6759194299466388, 1.0], [1.3806778248166505, -0.5315535701087005, -7.749000385711544e-7], 1.7099861980276114),
+];
+
+#[test]
+fn the_worst_points_of_the_grid_are_no_worse() {
+    for (of, most, moments, omega, t) in WORST {
+        let inertia = Inertia::from_moments(moments).unwrap();
+        let motion = FreeMotion::from_omega(&inertia, Default::default(), omega.into()).unwrap();
+        let exact = motion.point_at_dd(Dd::from(t));
+        let error = match of {
+            Of::Attitude => rotation_angle(motion.point_at(t).to_dd().attitude, exact.attitude).hi(),
+            Of::Omega => {
+                let inverse = Vec3(moments.map(|moment| Dd::from(motion.body().scale()) / moment));
+                let exact = exact.momentum_body.times(inverse);
+                let found = Vec3::of(Vec3::from(motion.omega_at(t).unwrap()));
+                ((found - exact).norm() / exact.norm()).hi()
+            }
+        };
+        let units = error / (f64::EPSILON / 2.0);
+        assert!(units <= most * 1.001, "{of:?} of {moments:?}, {omega:?} at {t} s: {units} u, not {most} u");
+    }
+}

@@ -122,7 +122,8 @@ fn corrections(h: f64, mut m: Vector3<f64>, steps: u32) -> f64 {
             let correction = (Matrix3::identity() - gradient).lu().solve(&lacking).unwrap_or(lacking);
             u += correction;
             count += 1;
-            if (correction.amax() / m.amax()).powi(2) <= settled {
+            let moved = correction.amax() / m.amax();
+            if moved * moved <= settled {
                 break;
             }
         }

@@ -1,8 +1,8 @@
 //! The angle about L by the integral of the third kind.
 
-use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Vector3};
 
-use super::plain::{amplitude, twist};
+use super::plain::{about_third, amplitude, quaternion, twist};
 use super::{Curve, Motion};
 use crate::experiments::evaluator::grid::Start;
 
@@ -21,10 +21,8 @@ pub(super) fn moving_frame(start: &Start) -> Motion {
     Box::new(move |t| {
         let place = curve.at(t);
         let psi = curve.twice_energy / norm * t + factor * (curve.pi(amplitude(&place), n) - offset);
-        let turn = first.transpose() * *Rotation3::from_axis_angle(&Vector3::z_axis(), psi).matrix();
-        let turn = turn * frame(&curve, place.momentum);
-        let q = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turn));
-        curve.turn(q.into())
+        let turn = first.transpose() * about_third(psi) * frame(&curve, place.momentum);
+        curve.turn(quaternion(turn))
     })
 }
 

@@ -1,5 +1,6 @@
 //! What the other forms share: the curve of the momentum by Jacobi's functions, all in doubles.
 
+use nalgebra::{Matrix3, Rotation3, UnitQuaternion};
 use polhode::num::elliptic::{Modulus, incomplete, r_f, r_j};
 use polhode::num::trig::sin_cos;
 use polhode::rotation::{Quat, Vec3};
@@ -139,4 +140,15 @@ pub(super) fn twist(angle: f64) -> Quat<f64> {
 pub(super) fn amplitude(place: &Place) -> f64 {
     let [sn, cn] = place.rest;
     place.halves * std::f64::consts::PI + libm::atan2(sn, cn)
+}
+
+/// The matrix of a turn about the third axis.
+pub(super) fn about_third(angle: f64) -> Matrix3<f64> {
+    let (sin, cos) = sin_cos(angle);
+    Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0)
+}
+
+/// The quaternion of a matrix that is a rotation to rounding.
+pub(super) fn quaternion(matrix: Matrix3<f64>) -> Quat<f64> {
+    UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(matrix)).into()
 }

@@ -3,11 +3,12 @@
 //! With axes 1, 2, 3 = c, −b, a: `ψ = A₁ + A₂ t − arg(r + is)`,
 //! `r + is = Σ (−1)ⁿ q^{n(n+1)} [(ξ^{n+½} + ξ^{−n−½}) sin (2n+1)x − i (ξ^{n+½} − ξ^{−n−½}) cos (2n+1)x]`, x = πu/2K.
 
-use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
+use nalgebra::Matrix3;
 use polhode::num::elliptic::{Modulus, r_f};
 use polhode::num::trig::sin_cos;
 use polhode::rotation::{Quat, Vec3};
 
+use super::plain::{about_third, quaternion};
 use super::{Curve, Motion};
 use crate::experiments::evaluator::grid::Start;
 
@@ -62,10 +63,8 @@ pub(super) fn motion(start: &Start) -> Motion {
     let first = frame(&curve, curve.start);
     Box::new(move |t| {
         let psi = a1 + a2 * t - argument(&curve, t);
-        let about = Rotation3::from_axis_angle(&Vector3::z_axis(), psi);
-        let turn = first * about.matrix() * frame(&curve, curve.at(t).momentum).transpose();
-        let q: Quat<f64> =
-            UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(turn)).into();
+        let turn = first * about_third(psi) * frame(&curve, curve.at(t).momentum).transpose();
+        let q = quaternion(turn);
         // from 1, 2, 3 to a, b, c
         curve.turn(Quat::new(q.w, Vec3([q.v[2], -q.v[1], q.v[0]])))
     })
