@@ -171,8 +171,8 @@ pub(super) fn run(context: &Context, report: &mut Report) -> Result<(), Error> {
             let mut cells = row![kind, form].to_vec();
             for mut errors in by_time {
                 errors.sort_by(f64::total_cmp);
-                let shown = |error: f64| (!is_lost(&error)).then(|| rounded(error));
-                let lost = errors.iter().filter(|error| is_lost(error)).count() as u64;
+                let shown = |error: f64| (error <= LOST).then(|| rounded(error));
+                let lost = errors.iter().filter(|error| **error > LOST).count() as u64;
                 cells.extend(row![shown(errors[errors.len() / 2]), shown(errors[errors.len() - 1]), lost]);
             }
             cells.push(source.into());
@@ -182,11 +182,6 @@ pub(super) fn run(context: &Context, report: &mut Report) -> Result<(), Error> {
     report.checks += motions * table.rows().len() as u64;
     report.tables.push(table);
     Ok(())
-}
-
-/// A motion that has no attitude is lost too.
-fn is_lost(error: &f64) -> bool {
-    error.is_nan() || *error > LOST
 }
 
 /// Of every form and at last of the library.
@@ -199,7 +194,11 @@ fn errors_of(kind: usize, motions: u64) -> Result<Vec<Errors>, Error> {
         let times = TURNED.map(|turned| turned / speed);
         let reference = Reference::new(&start);
         let exact = times.map(|t| reference.at(t));
-        let angle = |q: Quat<f64>, k: usize| errors((q, Vec3(start.omega)), exact[k])[0] * UNIT;
+        let angle = |q: Quat<f64>, k: usize| {
+            let error = errors((q, Vec3(start.omega)), exact[k])[0] * UNIT;
+            // a motion without an attitude is lost; a NaN might sort as the least
+            if error.is_nan() { f64::INFINITY } else { error }
+        };
         for (form, errors) in FORMS.iter().zip(&mut all) {
             let motion = (form.motion)(&start);
             (0..times.len()).for_each(|k| errors[k].push(angle(motion(times[k]), k)));
