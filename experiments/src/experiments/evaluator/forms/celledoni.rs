@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 
-use super::plain::{about_third, amplitude, quaternion, twist};
+use super::plain::{Characteristic, about_third, amplitude, quaternion, twist};
 use super::{Curve, Motion};
 use crate::experiments::evaluator::grid::Start;
 
@@ -14,13 +14,14 @@ pub(super) fn moving_frame(start: &Start) -> Motion {
     let norm = curve.norm;
     // the square of the other radius along b, at which m_c would be largest
     let other = ib * (ma * ma * (ic - ia) / ia + mb * mb * (ic - ib) / ib) / (ic - ib);
-    let n = (norm * norm / other).min(1.0);
+    let n =
+        Characteristic { n: norm * norm / other, complement: -ic * curve.separation / ((ic - ib) * other) };
     let factor = curve.separation / (curve.rate * ib * norm);
-    let offset = curve.pi(amplitude(&curve.at(0.0)), n);
+    let offset = curve.pi(&curve.at(0.0), n);
     let first = frame(&curve, curve.start);
     Box::new(move |t| {
         let place = curve.at(t);
-        let psi = curve.twice_energy / norm * t + factor * (curve.pi(amplitude(&place), n) - offset);
+        let psi = curve.twice_energy / norm * t + factor * (curve.pi(&place, n) - offset);
         let turn = first.transpose() * about_third(psi) * frame(&curve, place.momentum);
         curve.turn(quaternion(turn))
     })
@@ -40,8 +41,8 @@ pub(super) fn swing(start: &Start) -> Motion {
     let curve = Curve::new(start);
     let [ia, ib, ic] = curve.moments;
     let [a, b, c] = curve.amplitudes;
-    let n = -(ia * (ic - ib)) / (ic * (ib - ia));
-    let factor = curve.norm * b / (a * c) * n / 3.0;
+    let n = Characteristic::negative(-(ia * (ic - ib)) / (ic * (ib - ia)));
+    let factor = curve.norm * b / (a * c) * n.n / 3.0;
     let per_half = 2.0 * factor * curve.complete_third_kind(n) - std::f64::consts::PI;
     let periodic = move |curve: &Curve, [sn, cn]: [f64; 2]| {
         factor * curve.third_kind([sn, cn], n) - libm::atan2(b * sn, c * cn)
@@ -61,14 +62,15 @@ pub(super) fn swing(start: &Start) -> Motion {
 pub(super) fn principia(start: &Start) -> Motion {
     let curve = Curve::new(start);
     let [ia, ib, ic] = curve.moments;
-    let n = -(ia * (ic - ib)) / (ic * (ib - ia));
+    let n = Characteristic::negative(-(ia * (ic - ib)) / (ic * (ib - ia)));
     let (cn_factor, sn_factor) = ((ic * (ib - ia).abs()).sqrt(), (ib * (ic - ia).abs()).sqrt());
     let factor = curve.norm * (ia - ic) / (curve.rate * ia * ic);
     let angle = move |curve: &Curve, t: f64| {
         let place = curve.at(t);
         let sign = if place.halves.rem_euclid(2.0) == 0.0 { 1.0 } else { -1.0 };
         let [sn, cn] = place.rest.map(|x| x * sign);
-        let psi = factor * curve.pi(amplitude(&place), n) + libm::atan2(sn_factor * sn, cn_factor * cn);
+        let psi = factor * curve.pi_of_amplitude(amplitude(&place), n)
+            + libm::atan2(sn_factor * sn, cn_factor * cn);
         (psi, place)
     };
     let offset = angle(&curve, 0.0).0;

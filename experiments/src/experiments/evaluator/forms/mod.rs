@@ -1,7 +1,8 @@
 //! The same motions by other published forms of the solution, in doubles, with constants in doubles as in the programs that use them.
 //!
-//! Each is written from its formulas, with the care of the others: one function gives the curve of the momentum to all but the last,
-//! and the inputs have few digits, so that no form rounds the momentum of the start. The forms differ in the angle that is left.
+//! Each is written from its formulas with as much care for its constants: one function gives the curve of the momentum to all but the
+//! last two, and the inputs have few digits, so that no form rounds the momentum of the start. The forms differ in the angle that is
+//! left. Those of Principia and of Orekit are the steps of these programs, cancellations included.
 
 mod celledoni;
 mod orekit;
@@ -38,7 +39,7 @@ pub(super) struct Published {
 pub(super) const FORMS: [Published; 6] = [
     Published {
         name: "third kind, frame of m and dm/dt (Celledoni et al.)",
-        source: "Celledoni, Fassò, Säfström and Zanna, SIAM J. Sci. Comput. 30 (2008) 2084, as an early version of Principia's physics/euler_solver_body.hpp follows it; TOMS algorithm 903 has this frame and the next",
+        source: "Celledoni, Fassò, Säfström and Zanna, SIAM J. Sci. Comput. 30 (2008) 2084, as an early version of Principia's physics/euler_solver_body.hpp follows it; TOMS algorithm 903 has this frame and the next; here 1 - n is no difference that cancels",
         motion: celledoni::moving_frame,
     },
     Published {

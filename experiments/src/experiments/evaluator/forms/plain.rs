@@ -33,10 +33,30 @@ pub(super) struct Curve {
     pub(super) separation: f64,
 }
 
+/// The characteristic n of an integral of the third kind, with 1 − n, which for n near 1 is no difference.
+#[derive(Clone, Copy)]
+pub(super) struct Characteristic {
+    pub(super) n: f64,
+    pub(super) complement: f64,
+}
+
+impl Characteristic {
+    /// Of n < 0.
+    pub(super) fn negative(n: f64) -> Self {
+        Characteristic { n, complement: 1.0 - n }
+    }
+
+    /// 1 − n sn².
+    fn at(self, [sn, cn]: [f64; 2]) -> f64 {
+        if self.n > 0.0 { self.complement + self.n * cn * cn } else { 1.0 - self.n * sn * sn }
+    }
+}
+
 /// Where the curve is at one time.
 pub(super) struct Place {
     /// Along a, b, c.
     pub(super) momentum: [f64; 3],
+    pub(super) u: f64,
     /// Half periods since u = 0.
     pub(super) halves: f64,
     /// sn and cn of what is left.
@@ -92,7 +112,7 @@ impl Curve {
         let (sn, cn, dn) = self.modulus.sn_cn_dn(u - halves * 2.0 * self.quarter);
         let sign = if halves.rem_euclid(2.0) == 0.0 { 1.0 } else { -1.0 };
         let [a, b, c] = self.amplitudes;
-        Place { momentum: [a * dn, b * sn * sign, c * cn * sign], halves, rest: [sn, cn] }
+        Place { momentum: [a * dn, b * sn * sign, c * cn * sign], u, halves, rest: [sn, cn] }
     }
 
     /// A turn of the body that is given along a, b, c.
@@ -109,24 +129,31 @@ impl Curve {
         Quat::new(self.norm + a, Vec3([0.0, c, -b])).normalized()
     }
 
-    /// The integral of the third kind less that of the first, over n/3, from the minimum of sn to the pair (sn, cn ≥ 0).
-    pub(super) fn third_kind(&self, [sn, cn]: [f64; 2], n: f64) -> f64 {
+    /// The integral of the third kind less that of the first, over n/3, from the zero of sn to the pair (sn, cn ≥ 0).
+    pub(super) fn third_kind(&self, rest: [f64; 2], n: Characteristic) -> f64 {
+        let [sn, cn] = rest;
         let dn2 = self.complement + self.k2 * cn * cn;
-        sn * sn * sn * r_j(cn * cn, dn2, 1.0, 1.0 - n * sn * sn)
+        sn * sn * sn * r_j(cn * cn, dn2, 1.0, n.at(rest))
     }
 
     /// The same over a quarter period.
-    pub(super) fn complete_third_kind(&self, n: f64) -> f64 {
-        r_j(0.0, self.complement, 1.0, 1.0 - n)
+    pub(super) fn complete_third_kind(&self, n: Characteristic) -> f64 {
+        r_j(0.0, self.complement, 1.0, n.complement)
     }
 
-    /// Π(am, n) by its amplitude, as the difference from a whole number of half turns.
-    pub(super) fn pi(&self, amplitude: f64, n: f64) -> f64 {
+    /// Π(am u, n) at a place.
+    pub(super) fn pi(&self, place: &Place, n: Characteristic) -> f64 {
+        let periods = 2.0 * place.halves * self.complete_third_kind(n);
+        place.u + n.n / 3.0 * (periods + self.third_kind(place.rest, n))
+    }
+
+    /// Π(φ, n) of a rounded amplitude φ, less whole half turns.
+    pub(super) fn pi_of_amplitude(&self, amplitude: f64, n: Characteristic) -> f64 {
         let half_turns = (amplitude / std::f64::consts::PI).round();
         let (sin, cos) = sin_cos(amplitude - half_turns * std::f64::consts::PI);
         let first = sin * r_f(cos * cos, self.complement + self.k2 * cos * cos, 1.0);
-        let complete = self.quarter + n / 3.0 * self.complete_third_kind(n);
-        2.0 * half_turns * complete + first + n / 3.0 * self.third_kind([sin, cos], n)
+        let complete = self.quarter + n.n / 3.0 * self.complete_third_kind(n);
+        2.0 * half_turns * complete + first + n.n / 3.0 * self.third_kind([sin, cos], n)
     }
 }
 
