@@ -8,6 +8,7 @@ mod contestants;
 mod derivative;
 mod dissipation;
 mod drift;
+mod evaluator;
 mod exact;
 mod fit_attitudes;
 mod fit_efficiency;
@@ -60,6 +61,11 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "exact",
         question: "how accurate the exact motion is, in every regime and at any time",
         run: exact::run,
+    },
+    Experiment {
+        name: "evaluator",
+        question: "what one evaluation of the exact motion loses to rounding, and what other forms of the solution lose",
+        run: evaluator::run,
     },
     Experiment {
         name: "derivative",
