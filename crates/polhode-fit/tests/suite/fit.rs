@@ -310,6 +310,22 @@ fn scale_from_what_is_known_besides() {
     assert!(shape_only.inertia.is_none() && shape_only.inertia_covariance.is_none());
 }
 
+/// Noise of the rates enlarges their mean squares, here by some fifteen deviations; it is taken off.
+#[test]
+fn a_scale_from_energy_is_free_of_the_bias_of_noise() {
+    let (j, _, _) = example(0.0);
+    let omega = Vector3::new(0.3, -0.8, 0.6);
+    let record = record(&j, omega, &sampled(50, 60), 0.1, &mut Random::new(6));
+    let momentum = j * omega;
+    for known in [Known::TwiceEnergy(omega.dot(&momentum)), Known::Momentum(momentum.norm())] {
+        let estimate = fit(&record, &Settings::default().with_known(known)).unwrap();
+        let off = estimate.inertia.unwrap().tensor().trace() / j.trace() - 1.0;
+        let c = estimate.inertia_covariance.unwrap();
+        let sigma = c.fixed_view::<3, 3>(0, 0).sum().sqrt() / j.trace();
+        assert!(off.abs() < 4.0 * sigma && sigma < 0.02, "{known:?}: {off} {sigma}");
+    }
+}
+
 /// The mean energy and momentum carry noise of their own, and share some with the shape.
 #[test]
 #[ignore = "an ensemble: takes seconds, `.ci/run` does it"]
