@@ -140,16 +140,18 @@ struct Arranger<'a> {
 impl Arranger<'_> {
     /// The entry of which `k` is a multiple in all coefficients, the factor multiplied by that.
     fn base(&self, mut k: u32, factor: &mut Factor) -> u32 {
-        while self.merges {
+        if !self.merges {
+            return k;
+        }
+        loop {
             let Operation { kind, terms } = self.operations[k as usize];
             match kind {
                 Kind::Negative => factor.is_negative ^= true,
                 Kind::Scaled => factor.numbers.push(k),
-                _ => break,
+                _ => return k,
             }
             k = terms[0];
         }
-        k
     }
 
     /// Adds what the sum `k` is made of, times `factor`, to the terms.
