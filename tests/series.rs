@@ -164,6 +164,7 @@ fn the_time_of_a_law_that_is_evaluated_on_series_goes_on() {
     assert_eq!([tape.result(0, 1), tape.result(1, 1)], [1.0, 0.25]);
     tape.record(&[], law);
     tape.count_in(0.5);
+    (0..2).for_each(|_| tape.push(&[]));
     assert_eq!([0, 1, 2].map(|n| tape.result(0, n)), [3.5, 0.5, 0.0]);
     assert!((tape.result(1, 0) - (25.0 - 4.0 * core::f64::consts::TAU)).abs() < 1e-14);
     assert_eq!(tape.result(1, 1), 0.125);

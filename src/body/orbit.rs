@@ -274,14 +274,16 @@ impl Orbit {
 /// 3 GM/r³ and r̂ on the motion through place and velocity, as series in the time, by the equations of motion themselves, which take the fewest
 /// operations; `None` of other scalars.
 fn pulled<S: Real>(gm: S, state: [S; 4]) -> Option<(S, [S; 2])> {
-    let near = |x: S, y: S| S::of(1.0) / (x * x + y * y).sqrt();
+    let mut nearness = [S::of(0.0); 2];
     let [x, y, ..] = S::solution(state, |[x, y, u, v]| {
-        let near = near(x, y);
-        let pull = gm * (near * near * near);
+        let near = S::of(1.0) / (x * x + y * y).sqrt();
+        let cubed = near * near * near;
+        nearness = [near, cubed];
+        let pull = gm * cubed;
         [u, v, -(x * pull), -(y * pull)]
     })?;
-    let near = near(x, y);
-    Some((S::of(3.0) * gm * (near * near * near), [x * near, y * near]))
+    let [near, cubed] = nearness;
+    Some((S::of(3.0) * gm * cubed, [x * near, y * near]))
 }
 
 /// The solution of `χ + e χ³ c₃(αχ²) = s`, s at least 0 and of an ellipse at most half a revolution.

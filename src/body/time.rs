@@ -2,6 +2,9 @@
 
 use crate::num::{Dd, Precise, Real};
 
+/// Beyond it, 2⁵², every double is an integer.
+const WHOLE: f64 = 4_503_599_627_370_496.0;
+
 /// When a run starts and how long its steps are: step n begins at `start + n · step`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
@@ -94,6 +97,9 @@ impl Time {
 
     pub(super) fn reduced_angle(&self, rate: f64) -> Dd {
         let angle = self.dd() * rate;
-        angle - Dd::TAU * (angle / Dd::TAU).round()
+        let turns = angle.hi() * (0.5 * core::f64::consts::FRAC_1_PI);
+        // next to half a turn either number of turns will do; beyond the integers of a double only that of double-double
+        let turns = if turns.abs() < WHOLE { Dd::of(turns.round()) } else { (angle / Dd::TAU).round() };
+        angle - Dd::TAU * turns
     }
 }

@@ -28,10 +28,12 @@ mod lanes;
 #[cfg(any(test, feature = "random"))]
 mod random;
 mod real;
-pub(crate) mod series;
+mod recurrence;
+mod series;
 mod shown;
 pub(crate) mod stumpff;
 pub(crate) mod sum;
+mod tape;
 pub mod trig;
 
 pub use covariance::{Covariance, DistributionError};
@@ -44,9 +46,10 @@ pub(crate) use lanes::{LANES, Lane};
 #[cfg(any(test, feature = "random"))]
 pub use random::Random;
 pub use real::{Precise, Real};
-pub use series::{Series, Tape};
+pub use series::Series;
 #[doc(hidden)]
 pub use shown::{Computed, Shown};
 pub use sum::Compensated;
 #[doc(hidden)]
 pub use sum::add_carried;
+pub use tape::Tape;

@@ -24,7 +24,7 @@ pub trait Real:
     /// Unit roundoff of one operation.
     const ROUNDOFF: f64;
     /// How often Newton's iteration has to be taken from a root that is known as a double: each time doubles the digits that
-    /// are right, and of a [series](super::Series) the coefficients.
+    /// are right.
     const NEWTON_STEPS: u32 = 2;
     /// The scalar nearest to `x`.
     fn of(x: f64) -> Self;

@@ -219,7 +219,7 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
         let is_next_to_rest = momentum(moving) != 0.0 && allowed < f64::MIN_POSITIVE;
         let allowed = if is_next_to_rest { f64::MIN_POSITIVE } else { allowed };
         // there the terms of high orders are no normal doubles, and say nothing
-        let mut reach = if is_next_to_rest { 1.0 } else { f64::INFINITY };
+        let mut reach = if is_next_to_rest { 0.0 } else { f64::INFINITY };
         for n in [self.order - 1, self.order] {
             let of_attitude = (tolerance / length(self.attitude[n].components), n);
             let last = momentum(n);
@@ -227,11 +227,13 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
             let terms = [of_attitude, if bounds { (allowed / last, n - moving) } else { of_attitude }];
             if moving == 0 {
                 // one root of the smaller of the two
-                reach = least(reach, root(least(terms[0].0, terms[1].0), n));
+                reach = least(reach, log2(least(terms[0].0, terms[1].0)) / n as f64);
             } else {
-                reach = terms.into_iter().fold(reach, |reach, (ratio, n)| least(reach, root(ratio, n)));
+                reach =
+                    terms.into_iter().fold(reach, |reach, (ratio, n)| least(reach, log2(ratio) / n as f64));
             }
         }
+        let reach = exp2(reach);
         if !(reach.is_finite() && reach > 0.0) {
             return reach;
         }
@@ -240,9 +242,31 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
     }
 }
 
-/// `x^(1/n)`; infinite for the quotient of a number and 0.
-fn root(x: f64, n: usize) -> f64 {
-    libm::exp(libm::log(x) / n as f64)
+/// The logarithm to base 2 within 2e-9; that of a quotient by 0 is infinite.
+fn log2(x: f64) -> f64 {
+    if !x.is_normal() || x < 0.0 {
+        return libm::log2(x);
+    }
+    // x = 2^e m, √½ ≤ m < √2, by ln m = 2 artanh((m − 1)/(m + 1))
+    let above = x.to_bits() + (0x3ff0_0000_0000_0000 - core::f64::consts::FRAC_1_SQRT_2.to_bits());
+    let e = (above >> 52).cast_signed() - 1023;
+    let m = f64::from_bits(x.to_bits().wrapping_sub((e << 52).cast_unsigned()));
+    let t = (m - 1.0) / (m + 1.0);
+    let s = t * t;
+    let series = 1.0 + s * (1.0 / 3.0 + s * (1.0 / 5.0 + s * (1.0 / 7.0 + s * (1.0 / 9.0))));
+    e as f64 + 2.0 * core::f64::consts::LOG2_E * t * series
+}
+
+/// 2^x within 1e-8 of itself.
+fn exp2(x: f64) -> f64 {
+    if x.is_nan() || x.abs() >= 1022.0 {
+        return libm::exp2(x);
+    }
+    let whole = libm::rint(x);
+    let r = (x - whole) * core::f64::consts::LN_2;
+    let power = [5040.0, 720.0, 120.0, 24.0, 6.0, 2.0, 1.0].into_iter().fold(0.0, |sum, f| sum * r + 1.0 / f);
+    let power = power * r + 1.0;
+    power * f64::from_bits((((whole as i64) + 1023) << 52).cast_unsigned())
 }
 
 /// The smaller of the two; NaN if one is NaN.
@@ -253,4 +277,26 @@ fn least(a: f64, b: f64) -> f64 {
 /// What a torque is a function of.
 fn arguments<S>([w, x, y, z]: [S; 4], Vec3([a, b, c]): Vec3<S>) -> [S; 7] {
     [w, x, y, z, a, b, c]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn powers_of_two_and_their_logarithms_have_eight_digits() {
+        for k in -4000..4000 {
+            let x = f64::from(k) * 0.2531;
+            let power = libm::exp2(x);
+            assert!((exp2(x) / power - 1.0).abs() < 1e-8, "{x}");
+            assert!((log2(power) - x).abs() < 2e-9 + 1e-15 * x.abs(), "{x}");
+        }
+        let special = [f64::INFINITY, 0.0, f64::MIN_POSITIVE / 8.0].map(log2);
+        assert_eq!(special, [f64::INFINITY, f64::NEG_INFINITY, -1025.0]);
+        assert!(log2(f64::NAN).is_nan() && exp2(f64::NAN).is_nan());
+        assert_eq!([f64::INFINITY, f64::NEG_INFINITY, -3.0].map(exp2), [f64::INFINITY, 0.0, 0.125]);
+        // at both ends of the range of m
+        let around = core::f64::consts::FRAC_1_SQRT_2;
+        assert!([around, around.next_down()].iter().all(|x| (log2(*x) + 0.5).abs() < 2e-9));
+    }
 }
