@@ -159,8 +159,8 @@ fn wheels_are_fitted_to_the_bound() {
 
 /// Over 480 records the ratio scatters by 0.013, the coverage by 0.01.
 #[test]
-#[ignore = "an ensemble: takes seconds, `.ci/run` does it"]
-fn wheels_are_fitted_to_the_bound_whatever_body_wheel_and_noise() {
+#[ignore = "an ensemble: takes minutes"]
+fn wheels_are_fitted_to_the_bound_over_many_trials() {
     let cells = [
         (BODY, 0.1, false, 1e-3),
         (BODY, 0.3, false, 1e-2),

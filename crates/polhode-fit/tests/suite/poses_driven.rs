@@ -132,8 +132,8 @@ fn torques_and_torque_noise_are_fitted_to_attitudes() {
 
 /// Errors of 200 records of each kind: the root of the mean of χ²₅/5 scatters by 0.022, the share within the 95 % region by 0.015.
 #[test]
-#[ignore = "an ensemble: takes minutes, `.ci/run` does it"]
-fn ellipsoids_hold_under_torques() {
+#[ignore = "an ensemble: takes minutes"]
+fn ellipsoids_hold_under_torques_over_many_trials() {
     let count = 200;
     for (k, (acting, _)) in CASES.into_iter().enumerate() {
         let (mut inside, mut squares) = (0, 0.0);
