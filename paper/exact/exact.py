@@ -94,7 +94,7 @@ class Motion:
             self.rate -= pi*nu/(2*K)*sum(2*n*y for n, (x, y) in enumerate(self.z))/self.sums(mpf(0))[0].real
         else:
             nn, rho = mpf(0) if K is None else exp(-pi*K/KK), abs(C)/B
-            eta = eps*rho*elliprf(Ia*(Ic - Ib)/(Ib*(Ic - Ia)), 1 - kk2*rho**2, 1)
+            eta = eps*rho*elliprf(Ia*(Ic - Ib)/(Ib*(Ic - Ia)), k2*G**2/B**2, 1)
             self.xi = xi = pi*eta/(4*KK)
             f = [nn**(n*(n + 1)//2) for n in range(count(nn, lambda n: mpf(n*n)/2))]
             self.z = [(x*cos((2*n + 1)*xi), x*sin((2*n + 1)*xi)) for n, x in enumerate(f)]
