@@ -94,7 +94,7 @@ pub enum Warning {
     MomentumTrend(InvariantTrend),
     /// The energy ω·J ω changes.
     EnergyTrend(InvariantTrend),
-    /// Wheel momenta and torques of the record are too small to give the tensor its size.
+    /// Wheel momenta and torques of the record are too small to give the tensor its size, or would give it a negative one.
     NoScale,
     /// A torque was found and reckoned with.
     Torque(FittedTorque),
@@ -270,7 +270,7 @@ impl fmt::Display for Warning {
             Self::MomentumTrend(trend) => torque(f, "momentum |J w|", trend),
             Self::EnergyTrend(trend) => torque(f, "energy w J w", trend),
             Self::NoScale => f.write_str(
-                "the wheel momenta and torques do not stand out of the noise: the size of the tensor is unknown",
+                "the size of the tensor is unknown: the wheel momenta and torques do not stand out of the noise, or their sign is wrong",
             ),
             Self::Torque(torque) => reckoned(f, torque),
             Self::ConstantTorque { gain, turn } => write!(
