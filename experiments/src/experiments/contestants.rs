@@ -3,9 +3,11 @@
 use polhode::method::Cost;
 
 /// Schemes beside the catalogue; those that a force does not admit are left out there.
-pub(super) const SCHEMES: [&str; 19] = [
+pub(super) const SCHEMES: [&str; 21] = [
     "dmv:4",
     "dmv:6",
+    "dmv:16",
+    "dmv:20",
     "rattle@suzuki-4",
     "lie-poisson@suzuki-4",
     "lie-poisson@kahan-li-6",

@@ -74,7 +74,7 @@ impl Rates {
 }
 
 /// A free body of three point masses on its axes, of any shape therefore, and a start at 1 rad/s about any axis.
-fn drawn(mut random: Random) -> Result<(Body, State), Error> {
+pub(super) fn drawn(mut random: Random) -> Result<(Body, State), Error> {
     let masses = [(); 3].map(|()| random.between(0.05, 1.0));
     let moments = [masses[1] + masses[2], masses[0] + masses[2], masses[0] + masses[1]];
     let body = Body::free(Inertia::from_moments(moments).map_err(unexpected)?);

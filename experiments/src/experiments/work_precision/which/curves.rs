@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use polhode_pages::table::{Column, Table, row};
 
-use super::{Contest, Which, longest};
+use super::{CLOSED_FORM, Contest, Row, Which, longest};
 
 /// Methods that know nothing of rotation and are shown wherever they reach an accuracy.
 const GENERAL: [&str; 5] = ["rk4", "dop853", "rk8", "taylor", "gauss:8"];
@@ -14,7 +14,8 @@ const GEOMETRIC: &str = "geometric";
 
 impl Which {
     /// By kind and method the cost at each accuracy, with the distances to 10 % and 90 % of the starts: of the general-purpose
-    /// methods, and of the one method that knows of rotation and is the quickest of those at most accuracies.
+    /// methods, of the closed form in equal steps, and of the one method that knows of rotation, has an error of its step and is the
+    /// quickest of those at most accuracies.
     pub(crate) fn curves(&self) -> Table {
         let columns = vec![
             Column::new("kind", "", "what is asked"),
@@ -38,10 +39,10 @@ impl Which {
             let Some(first) = contests.iter().find(|contest| contest.kind == kind) else { continue };
             let of = |contest: &&Contest| contest.case == first.case && contest.turned == turned;
             let panel: Vec<&Contest> = contests.iter().filter(of).collect();
-            let curves = GENERAL.map(|name| (name, name)).into_iter();
+            let curves = GENERAL.into_iter().chain([CLOSED_FORM]).map(|name| (name, name));
             for (curve, method) in curves.chain(quickest(&panel).map(|name| (GEOMETRIC, name))) {
-                let rows = panel.iter().flat_map(|contest| &contest.costs).filter(|row| row.method == method);
-                let rows: Vec<_> = rows.collect();
+                let of = |row: &&Row| row.case == first.case && row.turned == turned && row.method == method;
+                let rows: Vec<&Row> = self.rows.iter().filter(of).collect();
                 let finest = rows.iter().map(|row| row.accuracy).fold(f64::INFINITY, f64::min);
                 for row in rows {
                     table.push(row![
@@ -87,6 +88,7 @@ mod tests {
                    free,\"a, b\",10000.0,0.01,split,no,2.0,1.5,3.0\n\
                    free,\"a, b\",10000.0,1e-4,split,no,3.0,1.5,3.0\n\
                    free,\"a, b\",10000.0,0.01,rk8,yes,4.0,3.0,\n\
+                   free,\"a, b\",10000.0,0.01,exact-step,no,0.5,0.5,0.5\n\
                    free,\"a, b\",10000.0,0.01,tsit5,yes,8.0,7.0,9.0\n\
                    free,\"a, b\",1e6,0.01,late,no,1.0,1.0,1.0\n\
                    free,c,10000.0,0.01,other,no,1.0,1.0,1.0\n";
@@ -96,6 +98,7 @@ mod tests {
             rows,
             [
                 "free,a b,10000.0,rk8,rk8,0.01,4.0,1.0,0.0",
+                "free,a b,10000.0,exact-step,exact-step,0.01,0.5,0.0,0.0",
                 "free,a b,10000.0,geometric,,0.01,2.0,0.5,1.0",
                 "free,a b,10000.0,geometric,split,0.0001,3.0,1.5,0.0",
             ]
