@@ -155,7 +155,7 @@ fn columns() -> Vec<Column> {
     vec![
         Column::new("method", "", "name in the catalogue, with its scheme"),
         Column::new("cost", "", "evaluations of a step over those of rk4").digits(2),
-        Column::new("step_p10", "", "at the same step: 10 % of the ratios").heading("10 %").digits(2),
+        Column::new("step_p10", "", "at the same step: 10 % of the ratios").hidden(),
         Column::new("step", "", "at the same step: median; empty where most are lost")
             .heading("same step")
             .digits(2),
@@ -169,7 +169,7 @@ fn columns() -> Vec<Column> {
         .digits(2),
         share("step_better_low", "95 % interval of this share: its lower end"),
         share("step_better_high", "its upper end"),
-        Column::new("cost_p10", "", "at the same cost: 10 % of the ratios").heading("10 %").digits(2),
+        Column::new("cost_p10", "", "at the same cost: 10 % of the ratios").hidden(),
         Column::new("cost_median", "", "at the same cost: median").heading("same cost").digits(2),
         Column::new("cost_p90", "", "at the same cost: 90 %").heading("90 %").digits(2),
         Column::new(
