@@ -126,6 +126,33 @@ impl Truth {
         Ok(Truth { body, start, start_time, span, closed, follower, looks, apart, jump, turning })
     }
 
+    /// As [`from_point`](Self::from_point), where a motion without closed form is known as long as two runs of different methods in
+    /// `f64` agree to `accuracy` rad: over far longer times than runs in double-double can be waited for, and to fewer digits.
+    ///
+    /// ```
+    /// use polhode::truth::{Truth, evenly};
+    /// use polhode::{Body, Inertia};
+    /// let body = Body::heavy(Inertia::from_moments([0.5, 0.85, 1.0])?, [0.0, 0.0, 1.0].into())?;
+    /// let start = body.state(Default::default(), [0.4, 1.2, 0.4].into())?;
+    /// let from = body.enter(&start)?.to_f64();
+    /// let truth = Truth::to_accuracy(&body, from, 0.0, &evenly(100.0, 4), 1e-9)?;
+    /// assert_eq!(truth.known_until(), 100.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`new`](Self::new), and a torque that jumps.
+    pub fn to_accuracy(
+        body: &Body,
+        start: Point<f64>,
+        start_time: f64,
+        times: &[f64],
+        accuracy: f64,
+    ) -> Result<Self, TruthError> {
+        let wanted = Wanted { accuracy, bearable: accuracy, attainable: accuracy, patience: 0.0 };
+        Truth::within(body, start, start_time, times, wanted, &mut |_| {})
+    }
+
     /// As [`from_point`](Self::from_point), as well as `wanted`, at least cost: the closed form, else two runs of different methods
     /// in `f64`, else two in double-double. `heed` is told from time to time what part of a pass is done.
     ///

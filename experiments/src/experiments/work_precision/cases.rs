@@ -5,6 +5,7 @@ use polhode::catalogue;
 use polhode::inertia::Inertia;
 use polhode::num::{Dd, Random};
 use polhode::rotation::{Quat, Vec3};
+use polhode::truth::{AGREEMENT, Truth};
 use polhode_files::error::{Error, unexpected};
 use polhode_files::text::short;
 
@@ -68,6 +69,13 @@ const HEAVY: [(&str, [f64; 3], [f64; 3], f64); 2] = [
     ("Kovalevskaya top", [2.0, 2.0, 1.0], [1.3, 0.0, 0.0], 1.0),
 ];
 
+/// Beyond this horizon, in units, runs go only from the first `FEW` starts.
+pub(super) const LONG: f64 = 1e4;
+pub(super) const FEW: usize = 5;
+
+/// Up to this angle, rad, motions without closed form are known beyond it.
+const FAR: f64 = 1e-7;
+
 /// Share of the angular velocity across the middle axis of a start next to the separatrix; and the tilt in rad of a top that
 /// is nearly upright.
 const NEAR: f64 = 1e-3;
@@ -85,7 +93,7 @@ const MEAN_MOTION: f64 = 0.125;
 pub(super) fn all(scale: Scale) -> Result<Vec<Case>, Error> {
     // a closed form is known at any time, a run in double-double costs its time
     let closed: &[f64] = scale.pick(&[1e2], &[1e2, 1e3], &[1e2, 1e4, 1e6]);
-    let followed: &[f64] = scale.pick(&[1e2], &[1e2, 1e3], &[1e2, 1e3, 1e4]);
+    let followed: &[f64] = scale.pick(&[1e2], &[1e2, 1e3], &[1e2, 1e3, 1e4, 1e5]);
     let members = scale.pick(2, 3, 11);
     let mut cases: Vec<Case> = Vec::new();
     for (name, moments) in &FREE[..scale.pick(1, 2, FREE.len())] {
@@ -124,7 +132,7 @@ pub(super) fn all(scale: Scale) -> Result<Vec<Case>, Error> {
         let how = format!("ω = {speed} rad/s in all directions, every attitude");
         cases.push(Case::new(name.into(), Kind::AsymmetricTop, body, (starts, how), followed)?);
     }
-    let orbiting: &[f64] = scale.pick(&[], &[1e2], &[1e2, 1e3]);
+    let orbiting: &[f64] = scale.pick(&[], &[1e2], &[1e2, 1e3, 1e5]);
     let in_orbit = [FREE[4], FREE[2]];
     for (name, moments) in &in_orbit[..if orbiting.is_empty() { 0 } else { scale.pick(0, 1, 2) }] {
         let inertia = Inertia::from_moments(*moments).map_err(unexpected)?;
@@ -200,13 +208,41 @@ impl Case {
         self.body.problem() == Problem::Free
     }
 
-    /// Times of the looks, s: 32 up to each horizon.
-    pub(super) fn looks(&self) -> Vec<f64> {
+    /// Whether its motion has a closed form.
+    fn is_closed(&self) -> bool {
+        !matches!(self.kind, Kind::AsymmetricTop | Kind::Orbit)
+    }
+
+    /// The true motion from a start, as far as runs go from there; of a motion without closed form up to `LONG`.
+    pub(super) fn motion(&self, start: usize) -> Result<Truth, Error> {
+        let times = self.looks(|horizon| self.is_closed() || horizon <= LONG);
+        Truth::from_point(&self.body, self.starts[start].to_f64(), 0.0, &times, AGREEMENT).map_err(unexpected)
+    }
+
+    /// The same up to the horizon beyond, from one of the first `FEW` starts, to `FAR` rad; `None` where [`motion`](Self::motion)
+    /// goes so far.
+    pub(super) fn far_motion(&self, start: usize) -> Result<Option<Truth>, Error> {
+        let times = self.looks(|horizon| horizon > LONG);
+        if self.is_closed() || times.is_empty() {
+            return Ok(None);
+        }
+        let truth = Truth::to_accuracy(&self.body, self.starts[start].to_f64(), 0.0, &times, FAR);
+        truth.map(Some).map_err(unexpected)
+    }
+
+    /// The finest accuracy that is judged up to a horizon, rad.
+    pub(super) fn finest(&self, horizon: f64) -> f64 {
+        if horizon > LONG && !self.is_closed() { 10.0 * FAR } else { 0.0 }
+    }
+
+    /// Times of the looks, s: 32 up to each of the horizons that are taken.
+    fn looks(&self, taken: impl Fn(f64) -> bool) -> Vec<f64> {
         let looks = |horizon: &f64| {
             let every = horizon * self.unit / 32.0;
             (1..=32).map(move |k| every * f64::from(k))
         };
-        let mut times: Vec<f64> = self.horizons.iter().flat_map(looks).collect();
+        let taken = self.horizons.iter().filter(|horizon| taken(**horizon));
+        let mut times: Vec<f64> = taken.flat_map(looks).collect();
         times.sort_by(f64::total_cmp);
         times.dedup();
         times

@@ -7,7 +7,8 @@ use polhode::truth::{Care, Ending, Judged, LOST, Truth};
 use polhode_files::error::{Error, unexpected};
 
 use super::super::contestants::{SCHEMES, TAKEN_BACK, weighed, weight};
-use super::cases::Case;
+use super::Motions;
+use super::cases::{Case, LONG};
 use super::contest::{Contestant, Quantiles, Run};
 use crate::timing::StepTime;
 
@@ -17,10 +18,8 @@ const TOLERANCES: [f64; 7] = [1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13, 1e-15];
 /// Steps are 100 units over 2^k, from this k on.
 const COARSEST: i32 = 5;
 
-/// Beyond this horizon, in units, a run goes only from the first `FEW` starts, where it costs at most `AFFORDABLE` evaluations
-/// per unit and its median error up to here is at most `WORTH_WHILE` rad.
-const LONG: f64 = 1e4;
-pub(super) const FEW: usize = 5;
+/// Beyond the horizon `LONG` a run goes only where it costs at most `AFFORDABLE` evaluations per unit and its median error up to
+/// there is at most `WORTH_WHILE` rad.
 const AFFORDABLE: f64 = 40.0;
 const WORTH_WHILE: f64 = 1e-3;
 
@@ -123,7 +122,7 @@ impl Entry {
     pub(super) fn measure(
         &self,
         case: &Case,
-        motions: &[Truth],
+        motions: &Motions,
         known_time: &mut Option<StepTime>,
     ) -> Result<Found, Error> {
         let (unit, horizons) = (case.unit, case.horizons);
@@ -140,7 +139,7 @@ impl Entry {
             }
         };
         let common = horizons.iter().copied().filter(|horizon| *horizon <= LONG).fold(0.0, f64::max);
-        let mut all = motions.iter().map(|motion| run(motion, common)).collect::<Result<Vec<_>, _>>()?;
+        let mut all = motions.all.iter().map(|motion| run(motion, common)).collect::<Result<Vec<_>, _>>()?;
         let evaluations: Vec<f64> = all
             .iter()
             .map(|measured| measured.as_ref().map_or(f64::INFINITY, |one| self.per_unit(case, one)))
@@ -152,14 +151,14 @@ impl Entry {
         let middle = |values: Vec<f64>| Quantiles::of(values).map_or(f64::INFINITY, |found| found.median);
         let error = middle(errors[before].iter().copied().flatten().collect());
         if end > LONG && error <= WORTH_WHILE && middle(evaluations.clone()) <= AFFORDABLE {
-            all = motions.iter().take(FEW).map(|motion| run(motion, end)).collect::<Result<Vec<_>, _>>()?;
+            all = motions.far().iter().map(|motion| run(motion, end)).collect::<Result<Vec<_>, _>>()?;
             let last = horizons.len() - 1;
             errors[last] = errors_of(&all, end * unit, end * unit);
-            errors[last].resize(motions.len(), None);
+            errors[last].resize(motions.all.len(), None);
         }
         let claims = self.method.claims(case.body.problem());
         let varies = self.step.is_none() || claims.is_some_and(|claims| claims.cost.solves > 0);
-        let time = match (*known_time, motions.first()) {
+        let time = match (*known_time, motions.all.first()) {
             (Some(time), _) if !varies => time,
             (_, Some(motion)) => StepTime::of(self.method.as_ref(), motion, step)?,
             (_, None) => return Err(unexpected("a case has no starts")),

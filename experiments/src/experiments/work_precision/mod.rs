@@ -8,11 +8,11 @@ mod panel;
 mod tables;
 mod which;
 
-use polhode::truth::{AGREEMENT, Truth};
-use polhode_files::error::{Error, unexpected};
+use polhode::truth::Truth;
+use polhode_files::error::Error;
 use polhode_pages::figure::{Figure, sheet};
 
-use self::cases::Case;
+use self::cases::{Case, FEW};
 use self::contest::Currency;
 use self::entry::{Budget, contestant, families};
 use self::tables::{Contest, costs, error_row, is_free, winners};
@@ -86,15 +86,35 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     Ok(report)
 }
 
-/// The true motion from every start of every case.
-fn motions(context: &Context, cases: &[Case]) -> Result<Vec<Vec<Truth>>, Error> {
-    let starts = cases.iter().flat_map(|case| case.starts.iter().map(move |start| (case, start)));
+/// The true motions of a case.
+struct Motions {
+    /// From every start.
+    all: Vec<Truth>,
+    /// Beyond `LONG` from the first `FEW` starts, where those end before.
+    far: Vec<Truth>,
+}
+
+impl Motions {
+    /// Those that go on to the last horizon of a case, from the first `FEW` starts.
+    fn far(&self) -> &[Truth] {
+        if self.far.is_empty() { &self.all[..FEW.min(self.all.len())] } else { &self.far }
+    }
+}
+
+/// The true motions of every case.
+fn motions(context: &Context, cases: &[Case]) -> Result<Vec<Motions>, Error> {
+    let starts = cases.iter().flat_map(|case| (0..case.starts.len()).map(move |start| (case, start)));
     // those without a closed form stand last and take longest: first, so that no core waits at the end
     let parts: Vec<_> = starts.rev().collect();
     let found = context.in_parallel(parts, |(case, start)| {
-        let truth = Truth::from_point(&case.body, start.to_f64(), 0.0, &case.looks(), AGREEMENT);
-        truth.map_err(unexpected)
+        let far = if start < FEW { case.far_motion(start)? } else { None };
+        Ok((case.motion(start)?, far))
     });
     let mut found = found.into_iter().rev();
-    cases.iter().map(|case| found.by_ref().take(case.starts.len()).collect()).collect()
+    let of_case = |case: &Case| {
+        let found: Vec<_> = found.by_ref().take(case.starts.len()).collect::<Result<_, Error>>()?;
+        let (all, far): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+        Ok(Motions { all, far: far.into_iter().flatten().collect() })
+    };
+    cases.iter().map(of_case).collect()
 }

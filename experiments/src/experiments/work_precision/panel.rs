@@ -24,6 +24,9 @@ pub(super) fn panel(contest: &Contest, currency: Currency) -> Figure {
     let mut envelope: Vec<(f64, f64)> = Vec::new();
     for k in 0..=26 {
         let accuracy = libm::exp10(-0.5 * f64::from(k));
+        if accuracy < case.finest(case.horizons[last]) * (1.0 - 1e-9) {
+            break;
+        }
         let costs = others.iter().filter_map(|&one| {
             let cost = one.cost_of(accuracy, last, currency, &starts)?;
             Some((one.name.as_str(), cost.median))

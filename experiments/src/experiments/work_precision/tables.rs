@@ -1,19 +1,19 @@
 //! Rows for readers and for programs.
 
-use polhode::truth::Truth;
 use polhode_pages::table::{Cell, Column, Table, row};
 
 use super::super::contestants::knows_the_motion;
-use super::cases::{Case, Kind};
+use super::Motions;
+use super::cases::{Case, Kind, LONG};
 use super::contest::{CLOSED_FORM, Contestant, Currency, Quantiles, ranked};
-use super::entry::{Entry, FEW, Found};
+use super::entry::{Entry, Found};
 use crate::statistics::rounded;
 
 /// Accuracies that winners are named for, rad.
 const ACCURACIES: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 
 /// Horizons of the columns, units.
-const COLUMNS: [f64; 4] = [1e2, 1e3, 1e4, 1e6];
+const COLUMNS: [f64; 5] = [1e2, 1e3, 1e4, 1e5, 1e6];
 
 /// Methods that know nothing of rotation: their costs are always given.
 const GENERAL: [&str; 9] =
@@ -25,7 +25,7 @@ const CLOSE: f64 = 4.0;
 /// A case with its references and all runs.
 pub(super) struct Contest<'a> {
     pub(super) case: &'a Case,
-    pub(super) motions: &'a [Truth],
+    pub(super) motions: &'a Motions,
     pub(super) contestants: Vec<Contestant>,
 }
 
@@ -33,8 +33,9 @@ impl Contest<'_> {
     /// Starts that are judged up to a horizon: all whose motion is known so far, if they are at least half of them.
     pub(super) fn starts(&self, horizon: usize) -> Vec<usize> {
         let end = self.case.horizons[horizon];
-        let asked = if end > 1e4 { FEW.min(self.motions.len()) } else { self.motions.len() };
-        let known = |k: &usize| self.motions[*k].known_until() >= end * self.case.unit * (1.0 - 1e-9);
+        let motions = if end > LONG { self.motions.far() } else { &self.motions.all };
+        let asked = motions.len();
+        let known = |k: &usize| motions[*k].known_until() >= end * self.case.unit * (1.0 - 1e-9);
         let found: Vec<usize> = (0..asked).filter(known).collect();
         if 2 * found.len() >= asked { found } else { Vec::new() }
     }
@@ -47,7 +48,7 @@ impl Contest<'_> {
 }
 
 pub(super) fn errors() -> Table {
-    let caption = "Largest attitude error by method and step, up to 10^2, 10^3, 10^4 and 10^6 units of time: median over the \
+    let caption = "Largest attitude error by method and step, up to 10^2 to 10^6 units of time: median over the \
                    starts; a unit is about the time of one radian, a power of two in s. The steps of a method end where two \
                    halvings in a row bring no smaller error.";
     let quantile = |name, meaning| Column::new(name, "rad", meaning).hidden();
@@ -73,6 +74,9 @@ pub(super) fn errors() -> Table {
         quantile("error_1e4_p10", "10 % up to 10^4 units"),
         median("error_1e4", "median up to 10^4 units"),
         quantile("error_1e4_p90", "90 % up to 10^4 units"),
+        quantile("error_1e5_p10", "10 % up to 10^5 units, of the first five starts"),
+        median("error_1e5", "median up to 10^5 units"),
+        quantile("error_1e5_p90", "90 % up to 10^5 units"),
         quantile("error_1e6_p10", "10 % up to 10^6 units, of the first five starts"),
         median("error_1e6", "median up to 10^6 units"),
         quantile("error_1e6_p90", "90 % up to 10^6 units"),
@@ -154,7 +158,7 @@ pub(super) fn winners(name: &str, contests: &[Contest], currency: Currency) -> T
     let mut table = Table::new(name, caption, columns);
     for contest in contests {
         for (k, horizon, starts) in contest.judged() {
-            for accuracy in ACCURACIES {
+            for accuracy in accuracies(contest.case, horizon) {
                 let all = ranked(&contest.contestants, accuracy, k, currency, &starts);
                 let of = |name: &str| all.iter().find(|found| found.0 == name).map(|found| found.1.median);
                 let mut others = all.iter().filter(|found| !knows_the_motion(found.0));
@@ -198,7 +202,7 @@ pub(super) fn costs(contests: &[Contest]) -> Table {
     let mut table = Table::new("costs", caption, columns);
     for contest in contests {
         for (k, horizon, starts) in contest.judged() {
-            for accuracy in ACCURACIES {
+            for accuracy in accuracies(contest.case, horizon) {
                 let all = ranked(&contest.contestants, accuracy, k, Currency::Time, &starts);
                 let rivals = all.iter().filter(|found| !knows_the_motion(found.0));
                 let Some(least) = rivals.map(|found| found.1.median).next() else { continue };
@@ -222,6 +226,12 @@ pub(super) fn costs(contests: &[Contest]) -> Table {
         }
     }
     table
+}
+
+/// Accuracies that are judged up to a horizon.
+fn accuracies(case: &Case, horizon: f64) -> impl Iterator<Item = f64> {
+    let finest = case.finest(horizon);
+    ACCURACIES.into_iter().filter(move |accuracy| *accuracy >= finest * (1.0 - 1e-9))
 }
 
 /// Whether panels of a kind stand on the sheet of free bodies.

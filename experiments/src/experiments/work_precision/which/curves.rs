@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use polhode_pages::table::{Column, Table, row};
 
-use super::{CLOSED_FORM, Contest, Row, Which, longest};
+use super::{CLOSED_FORM, Contest, LONG, Row, Which, longest};
 
 /// Methods that know nothing of rotation and are shown wherever they reach an accuracy.
 const GENERAL: [&str; 5] = ["rk4", "dop853", "rk8", "taylor", "gauss:8"];
@@ -35,7 +35,7 @@ impl Which {
         let mut table = Table::new("curves", "Cost against accuracy, the first body of each kind.", columns);
         let contests = self.contests();
         for kind in self.kinds() {
-            let turned = longest(&contests, kind);
+            let turned = longest(&contests, kind, LONG);
             let Some(first) = contests.iter().find(|contest| contest.kind == kind) else { continue };
             let of = |contest: &&Contest| contest.case == first.case && contest.turned == turned;
             let panel: Vec<&Contest> = contests.iter().filter(of).collect();

@@ -12,8 +12,8 @@ use super::super::contestants::knows_the_motion;
 /// Accuracies of the table, rad.
 const ACCURACIES: [f64; 3] = [1e-4, 1e-8, 1e-12];
 
-/// Horizons of the table, units of time; beyond the first, kinds whose motion is not known so far have no rows.
-const HORIZONS: [f64; 2] = [1e4, 1e6];
+/// The table has, of each kind, the longest horizon up to this one, units of time, and the longest beyond it.
+const LONG: f64 = 1e4;
 
 /// Free motion is exact at any step of this one and its cost is the same at every accuracy: it stands beside the others in each row.
 const CLOSED_FORM: &str = "exact-step";
@@ -61,10 +61,10 @@ fn ranked<'a>(contests: &[&Contest<'a>]) -> Vec<(&'a str, f64)> {
     found
 }
 
-/// The first horizon, or as far as the motions of a kind are known.
-fn longest(contests: &[Contest], kind: &str) -> f64 {
+/// As far as the motions of a kind are known, up to a horizon.
+fn longest(contests: &[Contest], kind: &str, until: f64) -> f64 {
     let known = contests.iter().filter(|contest| contest.kind == kind).map(|contest| contest.turned);
-    known.filter(|turned| *turned <= HORIZONS[0]).fold(0.0, f64::max)
+    known.filter(|turned| *turned <= until).fold(0.0, f64::max)
 }
 
 impl Which {
@@ -147,7 +147,9 @@ impl Which {
         let mut table = Table::new("which", caption, columns);
         let contests = self.contests();
         for kind in self.kinds() {
-            for turned in [longest(&contests, kind), HORIZONS[1]] {
+            let mut horizons = [LONG, f64::INFINITY].map(|until| longest(&contests, kind, until)).to_vec();
+            horizons.dedup();
+            for turned in horizons {
                 for accuracy in ACCURACIES {
                     let of = |contest: &&Contest| {
                         contest.kind == kind && contest.turned == turned && contest.accuracy == accuracy
