@@ -76,3 +76,49 @@ pub(crate) fn walk_columns(stretches: &[Stretch], walk: f64, most: usize) -> Vec
     }
     columns
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Vector3;
+
+    use super::*;
+
+    #[test]
+    fn every_axis_has_its_errors_of_the_sensor_once() {
+        let priors = SensorPriors::default().with_offset(1.0).with_scale(1.0).with_axis_scales(1.0);
+        let priors = priors.with_misalignment(1.0).with_skew(1.0);
+        for columns in [sensor_columns(&priors, 1.0), reported_errors()] {
+            let mut names: Vec<&str> = columns.iter().map(|column| column.label().name).collect();
+            names.sort_unstable();
+            names.dedup();
+            // three offsets, a common scale, three scales, three angles, two delays
+            assert_eq!((columns.len(), names.len()), (12, 12), "{names:?}");
+        }
+    }
+
+    /// The steps of a walk take its readings from knot to knot without a gap: their shares add up to the part of the way.
+    #[test]
+    fn steps_of_a_walk_follow_each_other_on_every_axis() {
+        let times = vec![2.0, 4.0, 6.0, 8.0, 10.0];
+        let stretch = |index, times: Vec<f64>| Stretch {
+            rates: vec![Vector3::zeros(); times.len()],
+            weights: vec![1.0; times.len()],
+            inputs: None,
+            times,
+            index,
+        };
+        let all = [stretch(0, times.clone()), stretch(1, vec![0.0, SHORTEST])];
+        let columns = walk_columns(&all, 3.0, 4);
+        // of the short stretch one step
+        assert_eq!(columns.len(), 3 * 4 + 3);
+        assert_eq!(columns.iter().filter(|column| column.acts_on(&all[1])).count(), 3);
+        for t in times {
+            let own = columns.iter().filter(|column| column.acts_on(&all[0]));
+            let change =
+                own.filter_map(|c| c.effect().change_of_reading(&Vector3::zeros(), &Vector3::zeros(), t));
+            let sum: Vector3<f64> = change.sum();
+            // four steps of 2 from 2 to 10
+            assert_eq!(sum, Vector3::repeat((t - 2.0) / 2.0));
+        }
+    }
+}

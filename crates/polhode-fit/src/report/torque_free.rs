@@ -160,3 +160,15 @@ fn slope(
         InvariantTrend { rate: 0.0, sigma: f64::MAX }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_trend_is_significant_beyond_five_deviations_of_either_sign() {
+        let significant = |rate| InvariantTrend { rate, sigma: 0.1 }.significant();
+        assert!([0.51, -0.51].into_iter().all(significant));
+        assert!(![0.49, -0.49, 0.0].into_iter().any(significant));
+    }
+}

@@ -158,4 +158,19 @@ mod tests {
             assert!((found - least).abs() <= 2.0 * left * (1.0 + 1e-12), "{least}: {found}");
         }
     }
+
+    /// Both reach the least of a parabola within a decade at once, and go no further than a decade.
+    #[test]
+    fn the_least_of_a_parabola_is_one_step_away() {
+        for least in [-0.7, 0.0, 0.4] {
+            let cost = |x: f64| 3.0 + 2.0 * (x - least) * (x - least);
+            for found in [newton(cost, 0.1), vertex(cost, least + 0.5 * STEP)] {
+                assert!((found - least).abs() < 1e-9, "{least}: {found}");
+            }
+            assert!((newton(cost, least + 3.0) - (least + 2.0)).abs() < 1e-9);
+        }
+        // where there is none, down the slope or not at all
+        assert!(newton(|x| -x * x, 1.0) > 1.0);
+        assert_eq!(vertex(|x| -x * x, 1.0), 1.0);
+    }
 }

@@ -179,3 +179,26 @@ fn linear(gram: &Gram, factor: f64) -> Option<Matrix3<f64>> {
     let solved = normal.cholesky()?.solve(&-gradient);
     Some(tensor(&solved.fixed_rows::<5>(0).into_owned()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_moves_every_unknown() {
+        let body = FreeBody::known(&Matrix3::from_diagonal(&nalgebra::Vector3::new(1.0, 2.0, 2.5))).unwrap();
+        let step = SVector::from_fn(|k, _| 0.001 * (k + 1) as f64);
+        let moved = body.moved(&step, &Gram::identity(), 1.0).unwrap();
+        assert!((moved.root.norm() - 1.0).abs() < 1e-15);
+        let size = (body.root + {
+            let mut change = Matrix3::zeros();
+            ENTRIES_OF_ROOT.iter().enumerate().for_each(|(k, entry)| change[*entry] = step[k]);
+            change
+        })
+        .norm();
+        for (k, entry) in ENTRIES_OF_ROOT.into_iter().enumerate() {
+            assert!((moved.root[entry] * size - body.root[entry] - step[k]).abs() < 1e-15, "{k}");
+        }
+        assert_eq!((moved.drag, moved.constant), (step[6], [step[7], step[8], step[9]]));
+    }
+}
