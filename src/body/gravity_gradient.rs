@@ -3,8 +3,8 @@
 use nalgebra::Matrix3;
 
 use super::orbit::{Orbit, Place};
-use super::{Conserved, Force, ForceError, Potential, Time};
-use crate::num::Real;
+use super::{Body, Conserved, Force, ForceError, Potential, Problem, Time};
+use crate::num::{Dd, Real};
 use crate::rotation::{Quat, Vec3};
 
 const NAME: &str = "gravity gradient";
@@ -54,6 +54,43 @@ impl Force {
     /// The same on a body with the tensor `tensor`, kg m², body axes.
     pub(super) fn gradient_on(tensor: Matrix3<f64>, orbit: Orbit) -> Self {
         Force::potential(NAME, GravityGradient { tensor, orbit: orbit.clone() }).on_orbit(orbit)
+    }
+}
+
+/// The gravity gradient on a circle in the x–y plane of space, in the solver frame: `U = r̂·W r̂` with one W at all times.
+#[derive(Clone, Debug)]
+pub(crate) struct CircularGradient {
+    orbit: Orbit,
+    /// W = 3/2 n² I over the [scale](Body::scale): its diagonal, then the entries 23, 31, 12.
+    pub(crate) weights: [Dd; 6],
+}
+
+impl CircularGradient {
+    /// x and y of r̂ in space.
+    pub(crate) fn direction(&self, at: Time) -> [Dd; 2] {
+        let Vec3([x, y, _]) = self.orbit.at::<Dd>(at).direction;
+        [x, y]
+    }
+}
+
+impl Body {
+    /// The gravity gradient on a circle, where nothing else acts.
+    pub(crate) fn circular_gradient(&self) -> Option<CircularGradient> {
+        let [force] = self.forces() else { return None };
+        let orbit = force.orbit.clone().filter(|orbit| orbit.steady_rate().is_some())?;
+        if self.problem() != Problem::Potential || !self.wheels().is_empty() {
+            return None;
+        }
+        let gradient = GravityGradient { tensor: self.inertia().tensor(), orbit };
+        let strength = gradient.orbit.at::<Dd>(Time::from_seconds(0.0)).strength;
+        let share = strength * 0.5 * (1.0 / self.scale());
+        let frame = self.inertia().frame();
+        let columns = [0, 1, 2].map(|axis| {
+            let along: Vec3<Dd> = frame.rotate(Vec3::unit(axis));
+            frame.rotate_back(gradient.times(along)) * share
+        });
+        let weights = [(0, 0), (1, 1), (2, 2), (1, 2), (2, 0), (0, 1)].map(|(j, k)| columns[k][j]);
+        Some(CircularGradient { orbit: gradient.orbit, weights })
     }
 }
 

@@ -29,6 +29,7 @@ pub(crate) use exit::Exit;
 pub use field::{Field, Free};
 pub(crate) use field::{Forces, Witness};
 pub use force::Force;
+pub(crate) use gravity_gradient::CircularGradient;
 pub(crate) use law::Evaluated;
 pub use law::{Conserved, Potential, Torque};
 pub use linear_potential::{LinearPotential, vertical};

@@ -1,11 +1,14 @@
 //! Kepler's orbits of any eccentricity, in any plane: where a body is at which time.
 
+use core::any::{Any, TypeId};
+use core::cell::Cell;
 use core::cmp::Ordering;
 use core::f64::consts::PI;
 use std::sync::Arc;
 
 use super::force::finite;
 use super::orbit_table::Table;
+use super::time::reduced_angle;
 use super::{ForceError, Time};
 use crate::num::stumpff::{halvings, stumpff};
 use crate::num::{Dd, Precise as _, Real};
@@ -16,6 +19,19 @@ const NAME: &str = "orbit";
 /// Newton's iteration descends monotonically, and for eccentricities near 1 slowly until it doubles the digits: it is done
 /// before.
 const MOST_DESCENTS: u32 = 2048;
+
+/// A place on a circle or an ellipse in `f64`.
+#[derive(Clone, Copy)]
+struct Seen {
+    /// Mean motion, eccentricity and time.
+    of: ([f64; 2], Dd),
+    place: (f64, [f64; 2]),
+}
+
+thread_local! {
+    /// The last one: stages of a step, and forces at one of them, often ask for the same.
+    static LAST: Cell<Option<Seen>> = const { Cell::new(None) };
+}
 
 /// The orbit of a body about a point mass: a circle, an ellipse, a parabola, a hyperbola, or a table of places.
 ///
@@ -182,7 +198,7 @@ impl Orbit {
         let at = if self.passage == 0.0 { at } else { at.later(Dd::of(-self.passage)) };
         let in_plane = |(strength, [x, y]): (S, [S; 2])| (strength, Vec3([x, y, S::of(0.0)]));
         let (strength, direction) = match &self.speed {
-            Speed::Mean(rate) => in_plane(self.by_mean_motion(*rate, at)),
+            Speed::Mean(rate) => in_plane(self.seen_by_mean_motion(*rate, at)),
             Speed::AtPassage(rate) => in_plane(self.by_universal_variable(*rate, at)),
             Speed::Table(table) => table.at(at),
         };
@@ -193,15 +209,31 @@ impl Orbit {
         Place { strength, direction }
     }
 
+    /// As [`by_mean_motion`](Self::by_mean_motion), in `f64` once for each time.
+    fn seen_by_mean_motion<S: Real>(&self, rate: f64, at: Time) -> (S, [S; 2]) {
+        let now = at.dd();
+        let of = ([rate, self.eccentricity], now);
+        let is_f64 = TypeId::of::<S>() == TypeId::of::<f64>();
+        if let Some(seen) = LAST.get().filter(|seen| is_f64 && seen.of == of) {
+            let (strength, [x, y]) = seen.place;
+            return (S::of(strength), [S::of(x), S::of(y)]);
+        }
+        let found = self.by_mean_motion(rate, now);
+        if let Some(place) = (&found as &dyn Any).downcast_ref() {
+            LAST.set(Some(Seen { of, place: *place }));
+        }
+        found
+    }
+
     /// Of a circle or an ellipse, 3 n² (a/r)³ and r̂ in the plane of the orbit.
-    fn by_mean_motion<S: Real>(&self, rate: f64, at: Time) -> (S, [S; 2]) {
+    fn by_mean_motion<S: Real>(&self, rate: f64, now: Dd) -> (S, [S; 2]) {
         let one = S::of(1.0);
         let (x, y, near) = if self.eccentricity == 0.0 {
-            let (sin, cos) = at.angle::<S>(rate).sin_cos();
+            let (sin, cos) = S::linear(reduced_angle(now, rate), rate).sin_cos();
             (cos, sin, one)
         } else {
             let e = S::of(self.eccentricity);
-            let (sin, cos) = self.eccentric_anomaly::<S>(rate, at).sin_cos();
+            let (sin, cos) = self.eccentric_anomaly::<S>(reduced_angle(now, rate)).sin_cos();
             let near = one / (one - e * cos); // a/r
             let (n, minor) = (S::of(rate) * near, (one - e * e).sqrt());
             let state = [cos - e, minor * sin, -(n * sin), n * minor * cos];
@@ -215,15 +247,15 @@ impl Orbit {
     }
 
     /// The solution of Kepler's equation `E − e sin E = M`, M in [−π, π].
-    fn eccentric_anomaly<S: Real>(&self, rate: f64, at: Time) -> S {
-        let mean: f64 = at.angle(rate);
+    fn eccentric_anomaly<S: Real>(&self, anomaly: Dd) -> S {
+        let mean = anomaly.hi();
         let (e, m) = (self.eccentricity, mean.abs());
         // M + e and π are upper bounds, and E − e sin E is convex up to π
         let x = descend((m + e).min(PI), |x| {
             let (sin, cos) = Real::sin_cos(x);
             [x - e * sin - m, 1.0 - e * cos]
         });
-        let (e, m) = (S::of(e), S::from_dd(at.reduced_angle(rate)));
+        let (e, m) = (S::of(e), S::from_dd(anomaly));
         let mut x = S::of(if mean < 0.0 { -x } else { x });
         // each step doubles the digits: one polishes doubles, two give double-double
         for _ in 0..S::NEWTON_STEPS {

@@ -1,9 +1,10 @@
 //! Time without rounding: the start, whole steps, and what has gone by within a step.
 
+use crate::num::trig::nearest;
 use crate::num::{Dd, Precise, Real};
 
-/// Beyond it, 2⁵², every double is an integer.
-const WHOLE: f64 = 4_503_599_627_370_496.0;
+/// Up to it, 2⁵¹, the integer next to a double takes two additions.
+const COUNTED: f64 = 2_251_799_813_685_248.0;
 
 /// When a run starts and how long its steps are: step n begins at `start + n · step`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,8 +30,15 @@ impl Clock {
 
     /// Time since the start after `steps` steps, s, exact: a sum `t += h` would lose a second in a long enough run.
     pub fn elapsed(&self, steps: u64) -> Dd {
+        // a sum that is zero has the sign +
+        self.product(steps) + 0.0
+    }
+
+    #[inline]
+    fn product(&self, steps: u64) -> Dd {
         let (high, low) = (steps >> 32, steps & 0xffff_ffff);
-        Dd::product(high as f64 * 4_294_967_296.0, self.step) + Dd::product(low as f64, self.step)
+        let product = Dd::product(low as f64, self.step);
+        if high == 0 { product } else { Dd::product(high as f64 * 4_294_967_296.0, self.step) + product }
     }
 }
 
@@ -68,12 +76,15 @@ impl Time {
     /// Time since the start, s.
     #[inline]
     pub(crate) fn elapsed(&self) -> Dd {
-        self.clock.elapsed(self.steps) + self.offset
+        self.clock.product(self.steps) + self.offset
     }
 
     /// In seconds, exact to the digits of double-double.
+    #[inline]
     pub fn dd(&self) -> Dd {
-        Dd::of(self.clock.start) + self.elapsed()
+        let elapsed = self.elapsed();
+        // most runs start at 0, and forces ask at every stage
+        if self.clock.start == 0.0 { elapsed } else { Dd::of(self.clock.start) + elapsed }
     }
 
     /// In seconds, rounded once; as a [series](crate::num::Series) it grows with its variable, as every function of it then
@@ -91,15 +102,21 @@ impl Time {
     /// The angle `rate · t` (rate in rad/s), reduced to [−π, π] in double-double, so that many turns cost no digits of a
     /// double; as a series it goes on from there.
     #[must_use]
+    #[inline]
     pub fn angle<S: Real>(&self, rate: f64) -> S {
-        S::linear(self.reduced_angle(rate), rate)
+        S::linear(reduced_angle(self.dd(), rate), rate)
     }
+}
 
-    pub(super) fn reduced_angle(&self, rate: f64) -> Dd {
-        let angle = self.dd() * rate;
-        let turns = angle.hi() * (0.5 * core::f64::consts::FRAC_1_PI);
-        // next to half a turn either number of turns will do; beyond the integers of a double only that of double-double
-        let turns = if turns.abs() < WHOLE { Dd::of(turns.round()) } else { (angle / Dd::TAU).round() };
-        angle - Dd::TAU * turns
+/// The angle `rate · time`, reduced to [−π, π].
+#[inline]
+pub(super) fn reduced_angle(time: Dd, rate: f64) -> Dd {
+    let angle = time * rate;
+    let turns = angle.hi() * (0.5 * core::f64::consts::FRAC_1_PI);
+    // next to half a turn either number of turns will do; beyond the integers of a double only that of double-double
+    if turns.abs() < COUNTED {
+        angle - Dd::TAU * nearest(turns)
+    } else {
+        angle - Dd::TAU * (angle / Dd::TAU).round()
     }
 }

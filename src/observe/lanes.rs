@@ -5,6 +5,7 @@ use multiversion::multiversion;
 use multiversion::target::target_cfg_f;
 
 use super::Invariants;
+use super::circle::{Angles, Circle};
 use super::monitor::BLOCK;
 use crate::body::{LinearPotential, Point};
 use crate::num::error_free::two_prod;
@@ -97,6 +98,12 @@ impl Reference {
         self.settled(heavy(self, &Lanes::of(points)))
     }
 
+    /// The change of Jacobi's constant at each point, by the gravity gradient on a circle alone.
+    pub(super) fn circular(&self, circle: &mut Circle, points: &[Point<f64>]) -> [Lane; 1] {
+        let directions = circle.directions(points.iter().map(Point::steps));
+        self.settled(circular(self, circle, &directions, &Lanes::of(points)))
+    }
+
     fn settled<const N: usize>(&self, differences: [Lane; N]) -> [Lane; N] {
         // a NaN stays
         let settled = |d: f64| if self.ordinary && d < NOTHING { 0.0 } else { d };
@@ -113,9 +120,9 @@ impl Reference {
         squared.add_square::<FUSED>(m[2]);
         let rotated = Rotated::new::<FUSED>(q, m);
         let difference = Vec3([
-            self.momentum_difference::<FUSED, 0>(&rotated),
-            self.momentum_difference::<FUSED, 1>(&rotated),
-            self.momentum_difference::<FUSED, 2>(&rotated),
+            self.momentum_difference::<FUSED, 0>(&rotated).value(),
+            self.momentum_difference::<FUSED, 1>(&rotated).value(),
+            self.momentum_difference::<FUSED, 2>(&rotated).value(),
         ]);
         let mut twice_energy = Compensated::minus([2.0 * self.energy[0], 2.0 * self.energy[1]]);
         self.add_kinetic::<FUSED>(&mut twice_energy, m);
@@ -143,8 +150,73 @@ impl Reference {
         vertical.add_product_by::<FUSED>(-x, x);
         vertical.add_product_by::<FUSED>(-y, y);
         twice_energy.add_scaled_by::<FUSED>(vertical, [2.0 * high[2], 2.0 * low[2]]);
-        let difference = self.momentum_difference::<FUSED, 2>(&Rotated::new::<FUSED>(q, m));
+        let difference = self.momentum_difference::<FUSED, 2>(&Rotated::new::<FUSED>(q, m)).value();
         [0.5 * twice_energy.value().abs(), difference.abs()]
+    }
+
+    #[inline(always)]
+    fn circular_differences<const FUSED: bool>(
+        &self,
+        circle: &Circle,
+        directions: &[Angles; 2],
+        n: usize,
+        q: Quat<f64>,
+        m: Vec3<f64>,
+    ) -> [f64; 1] {
+        let [[a, b], [c, d]] = directions;
+        let [[a, b], [c, d]] = [[a, b], [c, d]].map(|angle| angle.map(|[high, low]| [high[n], low[n]]));
+        let mut cosine = Compensated::new(0.0);
+        cosine.add_product_of_parts::<FUSED>(a, c);
+        cosine.add_product_of_parts::<FUSED>(b.map(|b| -b), d);
+        let mut sine = Compensated::new(0.0);
+        sine.add_product_of_parts::<FUSED>(a, d);
+        sine.add_product_of_parts::<FUSED>(b, c);
+        let (cosine, sine) = (cosine.parts(), sine.parts());
+        let (w, Vec3([x, y, z])) = (q.w, q.v);
+        // r̂ = cos X + sin Y, of the rows X and Y of the rotation, off the diagonal by their halves
+        let mut along = Compensated::new(0.0);
+        along.add_square::<FUSED>(w);
+        along.add_square::<FUSED>(x);
+        along.add_product_by::<FUSED>(-y, y);
+        along.add_product_by::<FUSED>(-z, z);
+        let mut first = Compensated::new(0.0);
+        first.add_scaled_by::<FUSED>(along, cosine);
+        let mut half = Compensated::new(0.0);
+        half.add_product_by::<FUSED>(x, y);
+        half.add_product_by::<FUSED>(w, z);
+        first.add_scaled_by::<FUSED>(half, sine.map(|s| 2.0 * s));
+        let mut along = Compensated::new(0.0);
+        along.add_square::<FUSED>(w);
+        along.add_square::<FUSED>(y);
+        along.add_product_by::<FUSED>(-x, x);
+        along.add_product_by::<FUSED>(-z, z);
+        let mut second = Compensated::new(0.0);
+        second.add_scaled_by::<FUSED>(along, sine);
+        let mut half = Compensated::new(0.0);
+        half.add_product_by::<FUSED>(x, y);
+        half.add_product_by::<FUSED>(-w, z);
+        second.add_scaled_by::<FUSED>(half, cosine.map(|c| 2.0 * c));
+        let mut half = Compensated::new(0.0);
+        half.add_product_by::<FUSED>(x, z);
+        half.add_product_by::<FUSED>(w, y);
+        let mut third = Compensated::new(0.0);
+        third.add_scaled_by::<FUSED>(half, cosine.map(|c| 2.0 * c));
+        let mut half = Compensated::new(0.0);
+        half.add_product_by::<FUSED>(y, z);
+        half.add_product_by::<FUSED>(-w, x);
+        third.add_scaled_by::<FUSED>(half, sine.map(|s| 2.0 * s));
+        let r = [first.parts(), second.parts(), third.parts()];
+        let mut twice = Compensated::minus([2.0 * self.energy[0], 2.0 * self.energy[1]]);
+        self.add_kinetic::<FUSED>(&mut twice, m);
+        twice.add_product_of_three::<FUSED>(r[0], r[0], circle.weights[0]);
+        twice.add_product_of_three::<FUSED>(r[1], r[1], circle.weights[1]);
+        twice.add_product_of_three::<FUSED>(r[2], r[2], circle.weights[2]);
+        twice.add_product_of_three::<FUSED>(r[1], r[2], circle.weights[3]);
+        twice.add_product_of_three::<FUSED>(r[2], r[0], circle.weights[4]);
+        twice.add_product_of_three::<FUSED>(r[0], r[1], circle.weights[5]);
+        let momentum_z = self.momentum_difference::<FUSED, 2>(&Rotated::new::<FUSED>(q, m));
+        twice.add_scaled_by::<FUSED>(momentum_z, [-2.0 * circle.rate, 0.0]);
+        [0.5 * twice.value().abs()]
     }
 
     /// Adds m · I⁻¹ m.
@@ -165,7 +237,7 @@ impl Reference {
 
     /// The component K of L − L₀.
     #[inline(always)]
-    fn momentum_difference<const FUSED: bool, const K: usize>(&self, x: &Rotated) -> f64 {
+    fn momentum_difference<const FUSED: bool, const K: usize>(&self, x: &Rotated) -> Compensated<f64> {
         let (i, j) = ((K + 1) % 3, (K + 2) % 3);
         let mut cross = Compensated::new(0.0);
         cross.add_product_by::<FUSED>(x.v[i], x.m[j]);
@@ -174,7 +246,7 @@ impl Reference {
         l.add_scaled_by::<FUSED>(x.diagonal, [x.m[K], 0.0]);
         l.add_scaled_by::<FUSED>(x.along, [2.0 * x.v[K], 0.0]);
         l.add_scaled_by::<FUSED>(cross, [2.0 * x.w, 0.0]);
-        l.value()
+        l
     }
 }
 
@@ -217,10 +289,22 @@ impl Compensated<f64> {
 
     /// Adds another sum times the number `high + low`.
     #[inline(always)]
-    fn add_scaled_by<const FUSED: bool>(&mut self, other: Self, [high, low]: [f64; 2]) {
-        let [sum, carry] = other.parts();
+    fn add_scaled_by<const FUSED: bool>(&mut self, other: Self, number: [f64; 2]) {
+        self.add_product_of_parts::<FUSED>(other.parts(), number);
+    }
+
+    /// Adds the product of two numbers in two parts.
+    #[inline(always)]
+    fn add_product_of_parts<const FUSED: bool>(&mut self, [sum, carry]: [f64; 2], [high, low]: [f64; 2]) {
         let (term, rest) = product::<FUSED>(sum, high);
         self.add_parts(term, rest + (carry * high + sum * low));
+    }
+
+    /// Adds the product of three.
+    #[inline(always)]
+    fn add_product_of_three<const FUSED: bool>(&mut self, a: [f64; 2], b: [f64; 2], c: [f64; 2]) {
+        let (term, rest) = product::<FUSED>(a[0], b[0]);
+        self.add_product_of_parts::<FUSED>([term, rest + (a[0] * b[1] + a[1] * b[0])], c);
     }
 }
 
@@ -254,6 +338,21 @@ fn heavy(reference: &Reference, lanes: &Lanes) -> [Lane; 2] {
         all(|n| reference.heavy_differences::<true>(lanes.attitude(n), lanes.momentum(n)))
     } else {
         all(|n| reference.heavy_differences::<false>(lanes.attitude(n), lanes.momentum(n)))
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn circular(reference: &Reference, circle: &Circle, directions: &[Angles; 2], lanes: &Lanes) -> [Lane; 1] {
+    if target_cfg_f!(target_feature = "fma") && reference.ordinary {
+        all(|n| {
+            let (q, m) = (lanes.attitude(n), lanes.momentum(n));
+            reference.circular_differences::<true>(circle, directions, n, q, m)
+        })
+    } else {
+        all(|n| {
+            let (q, m) = (lanes.attitude(n), lanes.momentum(n));
+            reference.circular_differences::<false>(circle, directions, n, q, m)
+        })
     }
 }
 

@@ -1,6 +1,7 @@
 //! Invariants in double-double, their largest errors over every step, and the statistics of secular drift. Takes states and
 //! series only.
 
+mod circle;
 mod drift;
 mod errors;
 mod flips;

@@ -1,5 +1,6 @@
 //! The largest errors over every step of a run.
 
+use super::circle::Circle;
 use super::flips::Flips;
 use super::forced::Forced;
 use super::invariants::with_wheels;
@@ -11,8 +12,9 @@ use crate::rotation::Vec3;
 
 /// Watches the steps of a run: the largest error of each invariant, and how often the body flipped.
 ///
-/// Steps come in blocks. Blocks of free motion and of motion in a linear potential are evaluated with error-free
-/// transformations, to about 1e-30 and in vectorised loops; with other forces every step is evaluated in double-double.
+/// Steps come in blocks. Blocks of free motion, of motion in a linear potential and of motion by the gravity gradient on a circle
+/// are evaluated with error-free transformations, to about 1e-30 and in vectorised loops; with other forces every step is evaluated
+/// in double-double.
 #[derive(Clone, Debug)]
 pub struct Monitor {
     field: Forces<Dd>,
@@ -20,8 +22,10 @@ pub struct Monitor {
     inverse_moments: Vec3<Dd>,
     wheels: Option<Wheels>,
     forced: Option<Forced>,
+    /// Where the gravity gradient on a circle is all that acts.
+    circle: Option<Box<Circle>>,
     start: Invariants,
-    reference: Reference,
+    pub(super) reference: Reference,
     worst: Errors,
     flips: Flips,
 }
@@ -48,12 +52,16 @@ impl Monitor {
         let mut flips = Flips::new(rotor.middle_axis());
         flips.observe(x.momentum_body);
         let start = Invariants::of(body, at, x);
+        let rate = forced.and_then(|forced| forced.jacobi.filter(|_| forced.jacobi_scale > 0.0));
+        let circle = body.circular_gradient().zip(rate);
+        let circle = circle.and_then(|(gradient, rate)| Circle::new(gradient, rate, clock)).map(Box::new);
         let mut monitor = Monitor {
             field: body.field_without_wheels(),
             clock,
             inverse_moments: rotor.inverse_moments(),
             wheels: body.momentum_of_wheels(),
             forced,
+            circle,
             reference: Reference::new(rotor.inverse_moments(), &start, body.linear_potential()),
             start,
             worst: Errors::NONE,
@@ -77,20 +85,26 @@ impl Monitor {
     }
 
     fn observe_block(&mut self, points: &[Point<f64>]) -> usize {
-        let finite = match &self.forced {
-            None => {
+        let finite = match (&self.forced, &mut self.circle) {
+            (None, _) => {
                 let (found, finite) = largest(self.reference.free(points), points.len());
                 self.worst = self.worst.max(self.errors_of(found));
                 finite
             }
-            Some(forced) if forced.linear_alone => {
+            (Some(forced), _) if forced.linear_alone => {
                 let ([energy, momentum_z], finite) = largest(self.reference.heavy(points), points.len());
                 let (energy, momentum_z) = (energy / forced.energy_scale, momentum_z / forced.momentum_scale);
                 let found = Errors { energy: Some(energy), momentum_z: Some(momentum_z), ..Errors::NONE };
                 self.worst = self.worst.max(found);
                 finite
             }
-            Some(_) => return self.observe_forced(points),
+            (Some(forced), Some(circle)) => {
+                let ([change], finite) = largest(self.reference.circular(circle, points), points.len());
+                let jacobi = Some(change / forced.jacobi_scale);
+                self.worst = self.worst.max(Errors { jacobi, ..self.worst });
+                finite
+            }
+            _ => return self.observe_forced(points),
         };
         for x in &points[..finite] {
             self.flips.observe(x.momentum_body);

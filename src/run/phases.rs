@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use super::run::probe;
 use super::schedule::{Place, ScheduleError};
 use super::{Run, RunError, Watch};
 use crate::body::{Body, Clock, Point, Time};
@@ -132,8 +131,6 @@ impl Run {
         self.residual = self.worst_residual();
         self.worked = self.work();
         self.step = self.prepared(n)?;
-        let acting = self.phases.body(n, &self.body, self.clock);
-        self.probe = probe(self.method.as_ref(), &acting, self.clock, &point)?;
         self.step.open_at(at, &mut point);
         (self.phase, self.point) = (n, point);
         Ok(())

@@ -36,8 +36,6 @@ pub struct Run {
     pub(super) body: Body,
     pub(super) method: Box<dyn AnyMethod>,
     pub(super) step: Box<dyn Step<f64>>,
-    /// The same step with forces that report a value that is not finite, and that report; with forces only.
-    pub(super) probe: Option<Probe>,
     pub(super) clock: Clock,
     /// Of the forces that are switched, and the one that `step` is of.
     pub(super) phases: Phases,
@@ -54,26 +52,6 @@ pub struct Run {
     pub(super) worked: Option<Work>,
     /// Whether steps have been taken that were not watched.
     pub(super) missed: bool,
-}
-
-/// Steps with forces that report a value that is not finite, and that report.
-pub(super) type Probe = (Box<dyn Step<f64>>, Witness);
-
-/// Of `method` for `body`, with forces only.
-pub(super) fn probe(
-    method: &dyn AnyMethod,
-    body: &Body,
-    clock: Clock,
-    start: &Point<f64>,
-) -> Result<Option<Probe>, RunError> {
-    if body.remainder().next().is_none() {
-        return Ok(None);
-    }
-    let witness = Arc::new(OnceLock::new());
-    let watched = body.witnessed(Arc::clone(&witness));
-    let mut step = method.prepare_f64(clock, &watched)?;
-    step.open(&mut start.clone());
-    Ok(Some((step, witness)))
 }
 
 /// A step of a run and what was watched up to it.
@@ -126,7 +104,6 @@ impl Run {
         }
         let phases = Phases::of(body, clock)?;
         let acting = phases.body(0, body, clock);
-        let probe = probe(method, &acting, clock, &start)?;
         let (mut step, mut point) = (method.prepare_f64(clock, &acting)?, start);
         phases.check(method, body, clock)?;
         if step.takes_back() {
@@ -139,7 +116,6 @@ impl Run {
         Ok(Run {
             step,
             method: method.boxed(),
-            probe,
             monitor: Monitor::new(body, clock, &start),
             body: body.clone(),
             clock,
@@ -356,13 +332,23 @@ impl Run {
         false
     }
 
+    /// Steps like the next, with forces that report a value that is not finite, and that report; none of a body without them.
+    fn probe(&self) -> Option<(Box<dyn Step<f64>>, Witness)> {
+        let acting = self.phases.body(self.phase, &self.body, self.clock);
+        acting.remainder().next()?;
+        let witness = Arc::new(OnceLock::new());
+        let mut step = self.method.prepare_f64(self.clock, &acting.witnessed(Arc::clone(&witness))).ok()?;
+        step.open(&mut self.point.clone());
+        Some((step, witness))
+    }
+
     /// Why the next step is not finite.
     pub(super) fn broken(&mut self) -> RunError {
         let last = match self.finite_sample() {
             Ok(last) => last,
             Err(error) => return error,
         };
-        if let Some((step, witness)) = &mut self.probe {
+        if let Some((mut step, witness)) = self.probe() {
             let mut next = self.point;
             step.remember(&self.step.memory());
             step.advance(&mut next, 1);

@@ -1,5 +1,7 @@
 //! The free body over a short time, by the Taylor series of its motion summed to rounding.
 
+use core::array::from_fn;
+
 use crate::body::{Gyroscopic, Point, Rotor};
 use crate::num::{Dd, Precise};
 use crate::rotation::{Quat, Vec3};
@@ -41,7 +43,7 @@ impl<S: Precise> ShortFlow<S> {
         ShortFlow {
             inverse_moments: rotor.inverse_moments(),
             gyroscopic: Gyroscopic::new(rotor, Dd::ONE),
-            reciprocals: core::array::from_fn(|n| S::from_dd(Dd::ONE / Dd::from(n.max(1) as u64))),
+            reciprocals: from_fn(|n| S::from_dd(Dd::ONE / Dd::from(n.max(1) as u64))),
         }
     }
 
@@ -54,40 +56,57 @@ impl<S: Precise> ShortFlow<S> {
     }
 
     /// The same with at most `N` terms.
+    ///
+    /// Products of the components of two terms stand in lanes of four, which the compiler takes two at a time.
     fn try_terms<const N: usize>(&self, t: S, x: &mut Point<S>) -> bool {
-        let zero = S::of(0.0);
-        let mut m = [Vec3([zero; 3]); N];
-        let mut w = [Vec3([zero; 3]); N];
-        let mut q = [Quat::zero(); N];
-        (m[0], w[0], q[0]) = (x.momentum_body, x.momentum_body.times(self.inverse_moments), x.attitude);
+        let (half, zero) = (S::of(0.5), S::of(0.0));
+        let (mut m, mut q, mut turn) = ([[zero; 5]; N], [[zero; 4]; N], [[zero; 3]; N]);
+        let two_rounds = |[x, y, z]: [S; 3]| [x, y, z, x, y];
+        let spin = |m: Vec3<S>| (m.times(self.inverse_moments) * half).0;
+        m[0] = two_rounds(x.momentum_body.0);
+        q[0] = x.attitude.components();
+        turn[0] = spin(x.momentum_body);
+        let mut least = [0.0; 2];
         let mut last = 0;
         for n in 0..N - 1 {
-            let (mut products, mut attitude) = (Vec3::zero(), Quat::zero());
+            let (mut products, mut attitude) = ([zero; 3], [zero; 4]);
             for k in 0..=n {
-                let (u, v) = (m[k], m[n - k]);
-                products = products + Vec3([u[1] * v[2], u[2] * v[0], u[0] * v[1]]);
-                attitude = attitude + q[k].rate(w[n - k]);
+                let (u, v) = (&m[k], &m[n - k]);
+                products = from_fn(|i| products[i] + u[i + 1] * v[i + 2]);
+                let ([w, x, y, z], [a, b, c]) = (q[k], turn[n - k]);
+                // ½ q ∘ (0, ω), term by term
+                let first = [-z * c, w * a, w * b, w * c];
+                let second = [-x * a, y * c, z * a, x * b];
+                let third = [-y * b, -z * b, -x * c, -y * a];
+                attitude = from_fn(|i| attitude[i] + (first[i] + (second[i] + third[i])));
             }
             let factor = t * self.reciprocals[n + 1];
             last = n + 1;
-            m[last] = self.gyroscopic.times(products) * factor;
-            w[last] = m[last].times(self.inverse_moments);
-            q[last] = attitude * factor;
-            let small = |term: f64, first: f64| term <= 0.25 * S::ROUNDOFF * first;
-            if small(m[last].magnitude(), m[1].magnitude()) && small(q[last].magnitude(), q[1].magnitude()) {
+            let momentum = self.gyroscopic.times(Vec3(products)) * factor;
+            m[last] = two_rounds(momentum.0);
+            turn[last] = spin(momentum);
+            q[last] = attitude.map(|c| c * factor);
+            if last == 1 {
+                let sizes = [momentum.magnitude(), Quat::from_components(q[last]).magnitude()];
+                least = sizes.map(|size| 0.25 * S::ROUNDOFF * size);
+            }
+            let small = |components: &[S], least: f64| components.iter().all(|c| c.magnitude() <= least);
+            if small(&momentum.0, least[0]) && small(&q[last], least[1]) {
                 break;
             }
         }
         if last == N - 1 {
             return false;
         }
-        let (mut momentum, mut attitude) = (m[last], q[last]);
+        let of = |n: usize| (Vec3([m[n][0], m[n][1], m[n][2]]), Quat::from_components(q[n]));
+        let (mut momentum, mut attitude) = of(last);
         for n in (1..last).rev() {
-            momentum = momentum + m[n];
-            attitude = attitude + q[n];
+            let (m, q) = of(n);
+            momentum = momentum + m;
+            attitude = attitude + q;
         }
-        if momentum.magnitude() <= STEADY * S::ROUNDOFF * m[0].magnitude() {
-            attitude = turned(q[0], w[0] * (t * S::of(0.5)));
+        if momentum.magnitude() <= STEADY * S::ROUNDOFF * x.momentum_body.magnitude() {
+            attitude = turned(x.attitude, Vec3(turn[0]) * t);
         }
         x.add_momentum(momentum);
         x.add_attitude(attitude);

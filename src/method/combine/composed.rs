@@ -67,16 +67,16 @@ impl<S: Real, M: Method<S> + Symmetric> Method<S> for Composed<M> {
     fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> Self::Map<F> {
         let mut begun = Dd::ZERO;
         let shares = self.scheme.lengths().unwrap_or_default();
+        let base = self.base.maps(rotor, field);
         let stage = |length| {
-            let stage = (begun, self.base.map(length, rotor, field));
+            let stage = (begun, base(length));
             begun = begun + length;
             stage
         };
         let stages = lengths::<S>(h, &shares).into_iter().map(stage).collect();
         // steps of one map alone
         let processor: Vec<_> = self.scheme.processor_lengths().into_iter().map(|p| (Part::A, p)).collect();
-        let base = |length| self.base.map(length, rotor, field);
-        ComposedMap { h, processor: Processor::new::<S>(h, &processor, base, base), stages }
+        ComposedMap { h, processor: Processor::new::<S>(h, &processor, &base, &base), stages }
     }
 }
 

@@ -182,7 +182,7 @@ impl<S: Real, A: Method<S> + FreePart> Method<S> for Splitting<A, Kicks> {
     type Map<F: Field<S>> = SplittingMap<A::Map<F>, KickMap<S, F>>;
 
     fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> Self::Map<F> {
-        let (a, b) = (|length| self.a.map(length, rotor, field), |length| self.b.map(length, rotor, field));
+        let (a, b) = (self.a.maps(rotor, field), self.b.maps(rotor, field));
         if !F::ACTS
             && let Some(map) = self.a.free_map(&self.scheme, h, rotor, field)
         {
@@ -211,9 +211,10 @@ impl<S: Real, A: Method<S> + FreePart> Method<S> for Splitting<A, Kicks> {
     {
         let _ = (self.a.wheel_cost()?, self.scheme.lengths()?);
         let split = self.a.wheel_split(rotor);
-        let free = |length| Box::new(self.a.map(length, rotor, &Free)) as Box<dyn Map<S>>;
+        let maps = self.a.maps(rotor, &Free);
+        let free = |length| Box::new(maps(length)) as Box<dyn Map<S>>;
         let a = |length| WheelMap::new(length, rotor, wheels, split.clone(), || free(length));
-        let b = |length| self.b.map(length, rotor, field);
+        let b = self.b.maps(rotor, field);
         Some(Box::new(self.by_scheme::<S, F, _>(h, rotor, a, b, false)))
     }
 }

@@ -69,7 +69,12 @@ pub trait Method<S: Real> {
     /// The map for the duration `h` (s, may be negative), a body with the constants `rotor` and the field `field`.
     fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> Self::Map<F>;
 
-    /// The same for free motion by `scheme`, where that takes fewer flows than the maps of the scheme one after another.
+    /// The maps for one body and any duration, with everything that does not change from one to another worked out once.
+    fn maps<F: Field<S>>(&self, rotor: &Rotor, field: &F) -> impl Fn(Dd) -> Self::Map<F> {
+        |h| self.map(h, rotor, field)
+    }
+
+    /// The map for free motion by `scheme`, where that takes fewer flows than the maps of the scheme one after another.
     fn free_map<F: Field<S>>(&self, _: &Scheme, _: Dd, _: &Rotor, _: &F) -> Option<Self::Map<F>> {
         None
     }

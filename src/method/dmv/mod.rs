@@ -2,6 +2,8 @@
 
 mod series;
 
+use std::sync::Arc;
+
 use thiserror::Error;
 
 use self::series::{LARGEST_ORDER, RoundedSeries, Series};
@@ -89,16 +91,22 @@ impl FreePart for PreprocessedDmv {
 impl<S: Precise> Method<S> for PreprocessedDmv {
     type Map<F: Field<S>> = PreprocessedDmvMap<S>;
     fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> PreprocessedDmvMap<S> {
-        let series = Series::new(rotor, self.order);
-        let plain = Dmv.map(h, rotor, field);
-        PreprocessedDmvMap {
-            rotor: *rotor,
-            h,
-            rounded: series.rounded(h),
-            series,
-            plain,
-            modified: plain,
-            fixed: false,
+        Method::<S>::maps(self, rotor, field)(h)
+    }
+
+    fn maps<F: Field<S>>(&self, rotor: &Rotor, field: &F) -> impl Fn(Dd) -> PreprocessedDmvMap<S> {
+        let series = Arc::new(Series::new(rotor, self.order));
+        move |h| {
+            let plain = Dmv.map(h, rotor, field);
+            PreprocessedDmvMap {
+                rotor: *rotor,
+                h,
+                rounded: series.rounded(h),
+                series: Arc::clone(&series),
+                plain,
+                modified: plain,
+                fixed: false,
+            }
         }
     }
 }
@@ -108,7 +116,7 @@ impl<S: Precise> Method<S> for PreprocessedDmv {
 pub struct PreprocessedDmvMap<S> {
     rotor: Rotor,
     h: Dd,
-    series: Series,
+    series: Arc<Series>,
     rounded: RoundedSeries<S>,
     plain: DmvMap<S>,
     /// Of the modified moments.
