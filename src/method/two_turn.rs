@@ -110,7 +110,7 @@ impl TwoAxes {
     /// With α, β, γ the reciprocal moments of outer, reference and inner axis,
     /// `24 H₃ = (α−β)²(β−γ) s_o s_j − (α−β)(β−γ)(α+β−2γ) s_o s_i + 2(α−β)(β−γ)² s_j s_i`
     /// (symmetric Baker–Campbell–Hausdorff series).
-    fn leading_term(self, moments: Vec3<f64>) -> ModifiedEnergy {
+    pub(in crate::method) fn leading_term(self, moments: Vec3<f64>) -> ModifiedEnergy {
         let [o, i] = self.0;
         let j = self.reference();
         let [alpha, beta, gamma] = [o, j, i].map(|k| 1.0 / moments[k]);

@@ -90,7 +90,7 @@ impl AxisOrder {
         of_least_error(candidates, m, moments).unwrap_or_else(|| Self::best(moments))
     }
 
-    fn leading_term(self, moments: Vec3<f64>) -> ModifiedEnergy {
+    pub(in crate::method) fn leading_term(self, moments: Vec3<f64>) -> ModifiedEnergy {
         let [outer, middle, inner] = self.0;
         let (a, b, c) = (1.0 / moments[inner], 1.0 / moments[middle], 1.0 / moments[outer]);
         let mut mixed = [0.0; 3];
