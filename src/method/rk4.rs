@@ -76,8 +76,12 @@ impl<S: Real, F: Field<S>> Map<S> for Rk4Map<S, F> {
     }
 
     fn side_by_side(&self) -> Option<SideBySide<S>> {
-        let kernel = Kernel::Rk4(self.normalized);
-        (!F::ACTS).then(|| SideBySide { kernel, constants: self.free.constants.to_vec() })
+        Some(if F::ACTS {
+            let Vec3(inverse_moments) = self.equations.inverse_moments;
+            SideBySide::new(Kernel::Rk4(self.normalized), inverse_moments.to_vec())
+        } else {
+            SideBySide::new(Kernel::FreeRk4(self.normalized), self.free.constants.to_vec())
+        })
     }
 }
 
@@ -89,12 +93,24 @@ fn rk4_step<S: Real, F: Field<S>>(
     equations: &Equations<S, F>,
     x: Phase<S>,
 ) -> Phase<S> {
-    let (half, two) = (h * S::of(0.5), S::of(2.0));
+    let half = h * S::of(0.5);
     let k1 = equations.rate(begin, &x);
     let k2 = equations.rate(middle, &(x + k1 * half));
     let k3 = equations.rate(middle, &(x + k2 * half));
     let k4 = equations.rate(end, &(x + k3 * h));
-    x + (k1 + (k2 + k3) * two + k4) * (h / S::of(6.0))
+    sum_of_stages(h, x, k1, k2 + k3, k4)
+}
+
+/// `x + h/6 (k₁ + 2 middle + k₄)`.
+#[inline(always)]
+pub(in crate::method) fn sum_of_stages<S: Real>(
+    h: S,
+    x: Phase<S>,
+    first: Phase<S>,
+    middle: Phase<S>,
+    last: Phase<S>,
+) -> Phase<S> {
+    x + (first + middle * S::of(2.0) + last) * (h / S::of(6.0))
 }
 
 /// The same step without torque, by an eighth fewer operations and with the same bits.

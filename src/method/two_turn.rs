@@ -9,6 +9,7 @@ use super::schemes::{Pairs, STRANG, Scheme, Stages};
 use super::{Cost, Energy, FreePart, Map, Method, SideBySide, Symmetric, WheelSplit};
 use crate::body::{Field, Point, Rotor, Time};
 use crate::flow::{Casimir, Flow};
+use crate::method::contract::lanes::LaneFlow;
 use crate::method::solve::modified_energy::{ModifiedEnergy, Orbit, PhaseErrorRates, of_least_error};
 use crate::method::solve::turns::Turns;
 use crate::num::{Dd, Precise, Real};
@@ -258,6 +259,11 @@ impl<S: Precise> Map<S> for TwoTurnMap<S> {
 
     fn side_by_side(&self) -> Option<SideBySide<S>> {
         self.turns.side_by_side()
+    }
+
+    fn part_side_by_side(&self) -> Option<SideBySide<S>> {
+        let ball = (LaneFlow::Ball, self.ball.quarter_rate(S::from_dd(self.h)));
+        Some(SideBySide::flows([ball].into_iter().chain(self.turns.flows())))
     }
 
     #[inline]

@@ -150,6 +150,11 @@ pub trait Map<S: Real>: Send + 'static {
         None
     }
 
+    /// As [`side_by_side`](Self::side_by_side), of [`apply`](Self::apply), for a map that is a part of another.
+    fn part_side_by_side(&self) -> Option<SideBySide<S>> {
+        None
+    }
+
     /// The worst relative residual at which an implicit solve ended; 0 for explicit maps.
     fn worst_residual(&self) -> f64 {
         0.0
@@ -196,6 +201,9 @@ impl<S: Real> Map<S> for Box<dyn Map<S>> {
     }
     fn side_by_side(&self) -> Option<SideBySide<S>> {
         (**self).side_by_side()
+    }
+    fn part_side_by_side(&self) -> Option<SideBySide<S>> {
+        (**self).part_side_by_side()
     }
     fn worst_residual(&self) -> f64 {
         (**self).worst_residual()

@@ -134,6 +134,10 @@ impl<S: Precise> Map<S> for AxisSplitMap<S> {
         self.turns.side_by_side()
     }
 
+    fn part_side_by_side(&self) -> Option<SideBySide<S>> {
+        Some(SideBySide::flows(self.turns.flows()))
+    }
+
     #[inline]
     fn close(&mut self, _: Time, x: &mut Point<S>) {
         self.turns.close(x);

@@ -6,7 +6,7 @@ use crate::body::Point;
 use crate::flow::{turn_a_little_about, turn_about, turn_about_axis};
 use crate::method::SideBySide;
 use crate::method::combine::lengths;
-use crate::method::contract::lanes::{Kernel, Width};
+use crate::method::contract::lanes::{LaneFlow, Width};
 use crate::method::schemes::{Part, Scheme};
 use crate::num::trig::SMALL;
 use crate::num::{Dd, Precise, Real};
@@ -117,12 +117,24 @@ impl<S: Precise> Turns<S> {
         } else {
             return None;
         };
-        let axes: &[usize] = match &self.axes {
-            Axes::Two([outer, inner]) => &[*inner, *outer],
-            Axes::Three([outer, middle, inner]) => &[*middle, *inner, *middle, *outer],
+        Some(SideBySide::flows(self.turns_and_rest(width, &self.cycle)))
+    }
+
+    /// What [`apply`](Self::apply) takes, for bodies side by side.
+    pub(in crate::method) fn flows(&self) -> impl Iterator<Item = (LaneFlow, S)> {
+        let first = (LaneFlow::Turn(self.outer(), Width::Any), self.first);
+        [first].into_iter().chain(self.turns_and_rest(Width::Any, &self.whole))
+    }
+
+    /// The turns `turns`, and what follows them.
+    fn turns_and_rest(&self, width: Width, turns: &[S]) -> impl Iterator<Item = (LaneFlow, S)> {
+        let axes = match self.axes {
+            Axes::Two([outer, inner]) => vec![inner, outer],
+            Axes::Three([outer, middle, inner]) => vec![middle, inner, middle, outer],
         };
-        let axes = axes.iter().copied().cycle().take(self.cycle.len()).collect();
-        Some(SideBySide { kernel: Kernel::Turns(axes, width), constants: self.cycle.clone() })
+        let turns =
+            axes.into_iter().cycle().zip(turns).map(move |(axis, rate)| (LaneFlow::Turn(axis, width), *rate));
+        turns.chain([(LaneFlow::Renormalize, S::of(0.0))])
     }
 
     fn outer(&self) -> usize {
