@@ -106,6 +106,21 @@ impl AxisOrder {
 #[derive(Clone, Copy)]
 struct Quadratic([f64; 6]);
 
+/// Of the products of two of the squares of squares, the mean over the sphere times (3/2)₄: E s^α = Π (½)_{α_i} / (3/2)₄ for |α| = 4.
+const MOMENTS: [[f64; 6]; 6] = {
+    const POWERS: [[usize; 3]; 6] = [[2, 0, 0], [0, 2, 0], [0, 0, 2], [0, 1, 1], [1, 0, 1], [1, 1, 0]];
+    const RISING_HALF: [f64; 5] = [1.0, 0.5, 0.75, 1.875, 6.5625];
+    let (mut moments, mut n) = ([[0.0; 6]; 6], 0);
+    while n < 36 {
+        let (p, q) = (POWERS[n / 6], POWERS[n % 6]);
+        moments[n / 6][n % 6] =
+            RISING_HALF[p[0] + q[0]] * RISING_HALF[p[1] + q[1]] * RISING_HALF[p[2] + q[2]];
+        n += 1;
+    }
+    moments
+};
+const RISING_THREE_HALVES: f64 = 59.0625;
+
 impl Quadratic {
     /// Σ κ_i s_j s_k, the axes in the order `axes`.
     fn mixed(coefficients: [f64; 3], axes: [usize; 3]) -> Self {
@@ -119,15 +134,11 @@ impl Quadratic {
         Quadratic([u[0] * v[0], u[1] * v[1], u[2] * v[2], mixed(1, 2), mixed(0, 2), mixed(0, 1)])
     }
 
-    /// Mean of the product over the sphere: E s^α = Π (½)_{α_i} / (3/2)_4 for |α| = 4.
+    /// Mean of the product over the sphere.
     fn mean_product(self, other: Self) -> f64 {
-        const POWERS: [[usize; 3]; 6] = [[2, 0, 0], [0, 2, 0], [0, 0, 2], [0, 1, 1], [1, 0, 1], [1, 1, 0]];
-        const RISING_HALF: [f64; 5] = [1.0, 0.5, 0.75, 1.875, 6.5625];
-        const RISING_THREE_HALVES: f64 = 59.0625;
         let mut sum = 0.0;
-        for (x, p) in self.0.iter().zip(POWERS) {
-            for (y, q) in other.0.iter().zip(POWERS) {
-                let moment: f64 = (0..3).map(|k| RISING_HALF[p[k] + q[k]]).product();
+        for (x, moments) in self.0.iter().zip(&MOMENTS) {
+            for (y, moment) in other.0.iter().zip(moments) {
                 sum += x * y * moment;
             }
         }
