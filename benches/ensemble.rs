@@ -22,8 +22,8 @@ const STEP: f64 = 0.01;
 const BURSTS: usize = 60;
 /// Of a burst. It is short, so that some run without another program between.
 const MEMBERS: u64 = 64;
-const FEW: u64 = 1000;
-const MANY: u64 = 6000;
+const FEW: u64 = 250;
+const MANY: u64 = 1500;
 /// Steps of a burst of the scalar rk4.
 const REFERENCE: u64 = 10_000;
 /// Members that are prepared.
@@ -49,30 +49,30 @@ const UNDER_FORCES: [(Instructions, &str, Forces, f64); 18] = {
     use Forces::{Drag, Gradient, Gravity};
     use Instructions::{Avx2, Baseline, Widest};
     [
-        (Widest, "rk4", Gravity, 6.0),
-        (Widest, "rk4", Gradient, 6.0),
-        (Widest, "rk4", Drag, 6.0),
-        (Widest, "two-turn:31", Gravity, 6.0),
-        (Widest, "two-turn:31", Gradient, 6.0),
-        (Widest, "lie-poisson:321", Gradient, 6.0),
-        (Avx2, "rk4", Gravity, 3.0),
-        (Avx2, "rk4", Gradient, 3.0),
-        (Avx2, "rk4", Drag, 3.0),
-        (Avx2, "two-turn:31", Gravity, 3.0),
-        (Avx2, "two-turn:31", Gradient, 3.0),
-        (Avx2, "lie-poisson:321", Gradient, 3.0),
-        (Baseline, "rk4", Gravity, 1.5),
-        (Baseline, "rk4", Gradient, 1.5),
-        (Baseline, "rk4", Drag, 1.5),
-        (Baseline, "two-turn:31", Gravity, 1.5),
-        (Baseline, "two-turn:31", Gradient, 1.5),
-        (Baseline, "lie-poisson:321", Gradient, 1.5),
+        (Widest, "rk4", Gravity, 8.4),
+        (Widest, "rk4", Gradient, 15.0),
+        (Widest, "rk4", Drag, 18.0),
+        (Widest, "two-turn:31", Gravity, 9.5),
+        (Widest, "two-turn:31", Gradient, 15.0),
+        (Widest, "lie-poisson:321", Gradient, 15.0),
+        (Avx2, "rk4", Gravity, 5.8),
+        (Avx2, "rk4", Gradient, 12.0),
+        (Avx2, "rk4", Drag, 13.8),
+        (Avx2, "two-turn:31", Gravity, 6.5),
+        (Avx2, "two-turn:31", Gradient, 12.0),
+        (Avx2, "lie-poisson:321", Gradient, 12.0),
+        (Baseline, "rk4", Gravity, 3.1),
+        (Baseline, "rk4", Gradient, 7.0),
+        (Baseline, "rk4", Drag, 8.1),
+        (Baseline, "two-turn:31", Gravity, 3.8),
+        (Baseline, "two-turn:31", Gradient, 7.0),
+        (Baseline, "lie-poisson:321", Gradient, 7.0),
     ]
 };
 
 /// How many thousands of bodies are prepared and read while the scalar rk4 takes a million steps.
 const SET_UPS: [(&str, f64); 4] =
-    [("rk4", 40.0), ("two-turn:31", 20.0), ("two-turn", 15.0), ("lie-poisson", 12.0)];
+    [("rk4", 53.0), ("two-turn:31", 18.0), ("two-turn", 11.0), ("lie-poisson", 9.0)];
 
 /// What acts on all members.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -238,13 +238,13 @@ fn main() -> ExitCode {
         let ensemble = ensemble.acted_on(move |inertia| Ok::<_, MemberError>(forces.on(inertia)));
         let mut steps = alone(name, &forces.on(inertia()));
         let [reference, few, many] = least(
-            [&mut || steps(REFERENCE / 4), &mut || advance(&ensemble, name, FEW / 4), &mut || {
-                advance(&ensemble, name, MANY / 4)
+            [&mut || steps(REFERENCE / 4), &mut || advance(&ensemble, name, FEW), &mut || {
+                advance(&ensemble, name, MANY)
             }],
             BURSTS,
         );
         let reference = 4.0 * reference / REFERENCE as f64;
-        let each = 4.0 * (many - few) / ((MANY - FEW) * MEMBERS) as f64;
+        let each = (many - few) / ((MANY - FEW) * MEMBERS) as f64;
         let ratio = reference / each;
         println!(
             "{set:10} {name:16} {what:10} {:14.2} {:12.0} {:14.1} {ratio:8.1}{}",

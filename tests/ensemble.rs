@@ -255,15 +255,24 @@ fn exact_motion_has_the_bits_of_each_member_alone() {
 
 #[test]
 fn parts_of_an_ensemble_have_the_bits_of_the_whole() {
-    let clock = Clock::new(0.01);
-    let whole = advanced(&members(0..100), "two-turn", clock, &[50]);
-    for shards in [3, 16] {
-        let mut together = vec![Vec::new()];
-        for shard in 0..shards {
-            let numbers = (0..100).filter(|k| k * shards / 100 == shard);
-            together[0].extend(advanced(&members(numbers), "two-turn", clock, &[50]).remove(0));
+    let clock = Clock::new(0.005);
+    for (what, forces) in [("nothing", Vec::new())].into_iter().chain(forces()) {
+        let name = if what.contains("drag") || what == "all" { "rk4" } else { "two-turn" };
+        let some = |numbers: &mut dyn Iterator<Item = usize>| {
+            let forces = forces.clone();
+            let acted_on = members(numbers).acted_on(move |inertia| {
+                Ok::<_, StateError>(forces.iter().cloned().fold(Body::free(inertia), Body::with))
+            });
+            advanced(&acted_on, name, clock, &[50])
+        };
+        let whole = some(&mut (0..100));
+        for shards in [2, 16] {
+            let mut together = vec![Vec::new()];
+            for shard in 0..shards {
+                together[0].extend(some(&mut (0..100).filter(|k| k * shards / 100 == shard)).remove(0));
+            }
+            assert_eq!(bits(&whole), bits(&together), "{what}, {shards} shards");
         }
-        assert_eq!(bits(&whole), bits(&together), "{shards} shards");
     }
 }
 

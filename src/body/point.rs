@@ -91,7 +91,7 @@ impl<S: Real> Point<S> {
     }
 
     /// `m += delta`.
-    #[inline]
+    #[inline(always)]
     pub fn add_momentum(&mut self, delta: Vec3<S>) {
         for k in 0..3 {
             self.add_component(k, delta[k]);
@@ -99,7 +99,7 @@ impl<S: Real> Point<S> {
     }
 
     /// `m[axis] += delta`.
-    #[inline]
+    #[inline(always)]
     pub fn add_component(&mut self, axis: usize, delta: S) {
         add_carried(&mut self.momentum_body[axis], &mut self.carried.momentum_body[axis], delta);
     }
@@ -141,7 +141,7 @@ impl<S: Real> Point<S> {
     }
 
     /// `q += delta`.
-    #[inline]
+    #[inline(always)]
     pub fn add_attitude(&mut self, delta: Quat<S>) {
         add_carried(&mut self.attitude.w, &mut self.carried.attitude.w, delta.w);
         // no loop, as in `renormalize`

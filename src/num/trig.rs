@@ -52,14 +52,14 @@ pub(crate) fn sin_cos_moderate(x: f64) -> (f64, f64) {
 pub const SMALL: f64 = 0.03125;
 
 /// Sine and cosine of `x` radians, |x| ≤ [`SMALL`]: Taylor polynomials, whose errors in sin x / x and cos x are below 2⁻⁵⁸.
-#[inline]
+#[inline(always)]
 pub fn sin_cos_small(x: f64) -> (f64, f64) {
     let z = x * x;
     (x + x * z * sine_small(z), cos_small(z))
 }
 
 /// `sin x / x` and `cos x` of the angle x with the square `z`, x ≤ [`SMALL`], by the same polynomials.
-#[inline]
+#[inline(always)]
 pub fn sinc_cos_small(z: f64) -> (f64, f64) {
     (1.0 + z * sine_small(z), cos_small(z))
 }

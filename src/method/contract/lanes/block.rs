@@ -55,7 +55,7 @@ impl Block {
         match instructions {
             Instructions::Widest => kernel::widest(self, range),
             Instructions::Avx2 => kernel::avx2(self, range),
-            Instructions::Baseline => kernel::steps(self, range),
+            Instructions::Baseline => kernel::baseline(self, range),
         }
         self.steps += n;
     }

@@ -106,9 +106,14 @@ pub(super) fn avx2(block: &mut Block, range: Range<u64>) {
     steps(block, range);
 }
 
-/// The same by what the caller is compiled for.
+/// The same by what the program is compiled for.
+#[inline(never)]
+pub(super) fn baseline(block: &mut Block, range: Range<u64>) {
+    steps(block, range);
+}
+
 #[inline(always)]
-pub(super) fn steps(block: &mut Block, range: Range<u64>) {
+fn steps(block: &mut Block, range: Range<u64>) {
     let takes_forces = block.kernel.takes_forces();
     let Block { kernel, acting, clock, points, constants, .. } = block;
     let (numbers, constants) = constants.split_at(if takes_forces { FORCES } else { 0 });

@@ -1,4 +1,4 @@
-//! Explicit steps of many free bodies at once: one lane for each body, in loops that the compiler turns into the widest
+//! Explicit steps of many bodies at once: one lane for each body, in loops that the compiler turns into the widest
 //! vector instructions there are.
 //!
 //! A lane is moved by the text that moves a single point, so that it has its bits. There is no fused multiply-add, which
