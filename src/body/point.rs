@@ -84,10 +84,10 @@ impl<S: Real> Point<S> {
         self.steps
     }
 
-    /// Counts a step.
+    /// Counts `n` steps.
     #[inline]
-    pub(crate) fn count_step(&mut self) {
-        self.steps += 1;
+    pub(crate) fn count_steps(&mut self, n: u64) {
+        self.steps += n;
     }
 
     /// `m += delta`.
@@ -165,7 +165,13 @@ impl<S: Real> Point<S> {
     /// Brings |q| back to 1 in every eighth step.
     #[inline]
     pub fn renormalize_at_times(&mut self) {
-        if self.steps % RENORMALIZE_EVERY == RENORMALIZE_EVERY - 1 {
+        self.renormalize_every(RENORMALIZE_EVERY);
+    }
+
+    /// The same in the last of every `count` steps.
+    #[inline]
+    pub(crate) fn renormalize_every(&mut self, count: u64) {
+        if self.steps % count == count - 1 {
             self.renormalize();
         }
     }

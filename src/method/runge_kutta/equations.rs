@@ -24,12 +24,6 @@ pub(in crate::method) struct Equations<S, F> {
     field: F,
 }
 
-/// q' and m' by the angular velocity ω and the torque τ.
-#[inline(always)]
-pub(in crate::method) fn rate_under<S: Real>(x: &Phase<S>, omega: Vec3<S>, torque: Vec3<S>) -> Phase<S> {
-    Phase { attitude: x.attitude.rate(omega), momentum_body: x.momentum_body.cross(omega) + torque }
-}
-
 impl<S: Real, F: Field<S>> Equations<S, F> {
     pub(in crate::method) fn new(rotor: &Rotor, field: &F) -> Self {
         Self::of(rotor.inverse_moments(), field.clone())

@@ -6,6 +6,6 @@ mod equations;
 mod pair;
 
 pub use embedded::Embedded;
-pub(super) use equations::{Equations, claims, rate_under};
+pub(super) use equations::{Equations, claims};
 pub(super) use pair::sum;
 pub use pair::{Control, Pair, Stage, Terms};

@@ -12,10 +12,12 @@ use multiversion::multiversion;
 use super::acting::{Acting, FORCES, Torques, vector};
 use super::block::{Block, PARTS};
 use super::stages::Stages;
-use crate::body::{Place, Point, RENORMALIZE_EVERY};
+use crate::body::{Free, Place, Point, Time};
 use crate::flow::{quarter_squared, quarters, turn_by};
-use crate::method::rk4::{FREE_CONSTANTS, FreeRk4};
-use crate::num::trig::{SMALL, sin_cos, sin_cos_moderate, sin_cos_small, sinc_cos_small};
+use crate::method::rk4::{RK4_CONSTANTS, Rk4Step, Scaled};
+use crate::num::trig::{
+    SMALL, sin_cos_moderate, sin_versine, sin_versine_moderate, sin_versine_small, sinc_cos_small,
+};
 use crate::num::{Dd, LANES, Lane, Real as _};
 use crate::rotation::Vec3;
 
@@ -43,9 +45,9 @@ macro_rules! each {
 pub(crate) enum Kernel {
     /// Flows, one after another, with a constant each.
     Flows(Vec<LaneFlow>),
-    /// The classical Runge–Kutta method without forces, normalised or not; the constants are those of [`FreeRk4`].
+    /// The classical Runge–Kutta method without forces, normalised or not; the constants are those of [`Rk4Step`].
     FreeRk4(bool),
-    /// The same under forces; the constants are the reciprocal moments.
+    /// The same under forces; the constants are those, and after them those of [`Scaled`].
     Rk4(bool),
 }
 
@@ -58,8 +60,8 @@ pub(crate) enum LaneFlow {
     Ball,
     /// A kick, so many seconds after the beginning of the step; the constant is its length, s.
     Kick(Dd),
-    /// Brings |q| back to 1 at times; the constant is of no use.
-    Renormalize,
+    /// Brings |q| back to 1 in the last of so many steps; the constant is of no use.
+    Renormalize(u64),
 }
 
 /// How far a turn goes.
@@ -130,10 +132,10 @@ fn steps(block: &mut Block, range: Range<u64>) {
                             let place = acting.place(clock.at(step).later(*begun));
                             kick((acting, numbers), place.as_ref(), points, constants, &mut torques);
                         }
-                        LaneFlow::Renormalize if step % RENORMALIZE_EVERY == RENORMALIZE_EVERY - 1 => {
+                        LaneFlow::Renormalize(every) if step % every == every - 1 => {
                             each!(points, |n, x| x.renormalize());
                         }
-                        LaneFlow::Renormalize => {}
+                        LaneFlow::Renormalize(_) => {}
                     }
                 }
             }
@@ -150,12 +152,12 @@ fn steps(block: &mut Block, range: Range<u64>) {
             }
         }
         Kernel::Rk4(normalized) => {
-            let Some((numbers, inverse_moments)) = numbers.first_chunk().zip(constants.first_chunk()) else {
-                return;
-            };
+            let Some(numbers) = numbers.first_chunk() else { return };
+            let Some((rk4, constants)) = constants.split_first_chunk() else { return };
+            let Some(scaled) = constants.first_chunk() else { return };
             let mut stages = Stages::ZERO;
             for step in range {
-                stages.step((acting, numbers), inverse_moments, clock, step, points);
+                stages.step((acting, numbers), (rk4, scaled), clock, step, points);
                 if *normalized {
                     each!(points, |n, x| x.attitude = x.attitude.normalized());
                 }
@@ -175,10 +177,10 @@ fn are_within(most: f64, angles: &Lane) -> bool {
     beyond == 0
 }
 
-/// A turn; `angles` is room for sine and cosine of half the angles.
+/// A turn; `angles` is room for the sines of half the angles, and for one less their cosines.
 #[inline(always)]
 fn turn(axis: usize, width: Width, points: &mut [Lane; PARTS], half_rates: &Lane, angles: &mut [Lane; 2]) {
-    let [sines, cosines] = angles;
+    let [sines, versines] = angles;
     let momenta = &points[4 + axis % 3];
     let width = match width {
         Width::Any => {
@@ -192,24 +194,24 @@ fn turn(axis: usize, width: Width, points: &mut [Lane; PARTS], half_rates: &Lane
     match width {
         Width::Small => {
             for n in 0..LANES {
-                (sines[n], cosines[n]) = sin_cos_small(momenta[n] * half_rates[n]);
+                (sines[n], versines[n]) = sin_versine_small(momenta[n] * half_rates[n]);
             }
         }
         Width::Moderate => {
             for n in 0..LANES {
-                (sines[n], cosines[n]) = sin_cos_moderate(momenta[n] * half_rates[n]);
+                (sines[n], versines[n]) = sin_versine_moderate(momenta[n] * half_rates[n]);
             }
         }
         Width::Any => {
             for n in 0..LANES {
-                (sines[n], cosines[n]) = sin_cos(momenta[n] * half_rates[n]);
+                (sines[n], versines[n]) = sin_versine(momenta[n] * half_rates[n]);
             }
         }
     }
     match axis {
-        0 => each!(points, |n, x| turn_by::<0, f64>(x, (sines[n], cosines[n]))),
-        1 => each!(points, |n, x| turn_by::<1, f64>(x, (sines[n], cosines[n]))),
-        _ => each!(points, |n, x| turn_by::<2, f64>(x, (sines[n], cosines[n]))),
+        0 => each!(points, |n, x| turn_by::<0, f64>(x, (sines[n], versines[n]))),
+        1 => each!(points, |n, x| turn_by::<1, f64>(x, (sines[n], versines[n]))),
+        _ => each!(points, |n, x| turn_by::<2, f64>(x, (sines[n], versines[n]))),
     }
 }
 
@@ -258,10 +260,20 @@ fn kick(
 }
 
 #[inline(always)]
-fn free_rk4<const NORMALIZED: bool>(points: &mut [Lane; PARTS], constants: &[Lane; FREE_CONSTANTS]) {
-    let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10] = constants;
+fn free_rk4<const NORMALIZED: bool>(points: &mut [Lane; PARTS], constants: &[Lane; RK4_CONSTANTS]) {
+    let (times, scaled) = ([Time::from_seconds(0.0); 3], Scaled::none());
     each!(points, |n, x| {
-        let rk4 = FreeRk4::of([c0[n], c1[n], c2[n], c3[n], c4[n], c5[n], c6[n], c7[n], c8[n], c9[n], c10[n]]);
-        x.set_phase(rk4.step::<NORMALIZED>(x.phase()));
+        let mut moved = rk4_of(constants, n).step(times, &Free, &scaled, x.phase());
+        if NORMALIZED {
+            moved.attitude = moved.attitude.normalized();
+        }
+        x.set_phase(moved);
     });
+}
+
+/// The step of the body in lane `n`.
+#[inline(always)]
+pub(super) fn rk4_of(constants: &[Lane; RK4_CONSTANTS], n: usize) -> Rk4Step<f64> {
+    let [c0, c1, c2, c3, c4, c5, c6, c7, c8] = constants;
+    Rk4Step::of([c0[n], c1[n], c2[n], c3[n], c4[n], c5[n], c6[n], c7[n], c8[n]])
 }
