@@ -170,11 +170,11 @@ fn steps(block: &mut Block, range: Range<u64>) {
 #[inline(always)]
 fn are_within(most: f64, angles: &Lane) -> bool {
     // counted, as what ends a loop early is not done in vectors
-    let mut beyond = 0;
+    let mut within = 0;
     for n in 0..LANES {
-        beyond += u64::from(!(angles[n].abs() <= most));
+        within += usize::from(angles[n].abs() <= most);
     }
-    beyond == 0
+    within == LANES
 }
 
 /// A turn; `angles` is room for the sines of half the angles, and for one less their cosines.
