@@ -1,6 +1,6 @@
-//! Bodies side by side against the scalar rk4 of the crate, bursts in turn in one run: `cargo bench -p
-//! polhode-benches --bench ensemble --features parallel`. Ends with 1 if a ratio is less than half of what it was
-//! when it was last looked at.
+//! Bodies side by side against the scalar rk4 of the crate, under forces against the scalar steps of the same method, bursts in turn
+//! in one run: `cargo bench -p polhode-benches --bench ensemble --features parallel`. Ends with 1 if a ratio is less than half of
+//! what it was when it was last looked at. What the processor has no instructions for is not measured, and no success either.
 
 #![allow(clippy::expect_used)]
 
@@ -11,21 +11,23 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use nalgebra::{UnitQuaternion, Vector3};
-use polhode::body::{Body, Clock, Point};
+use polhode::body::{Body, Clock, Force, Point};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::method::{Step, method};
 use polhode::num::Instructions;
-use polhode::run::{Ensemble, EnsembleError};
+use polhode::run::{Ensemble, EnsembleError, MemberError};
 
 const STEP: f64 = 0.01;
 const BURSTS: usize = 60;
 /// Of a burst. It is short, so that some run without another program between.
 const MEMBERS: u64 = 64;
-const FEW: u64 = 1000;
-const MANY: u64 = 6000;
+const FEW: u64 = 250;
+const MANY: u64 = 1500;
 /// Steps of a burst of the scalar rk4.
 const REFERENCE: u64 = 10_000;
+/// Members that are prepared.
+const SET_UP: u64 = 128;
 
 /// Instructions, method, and how many times as fast as the scalar rk4 it was, beside other programs, on a processor that takes two
 /// operations of 512 bits at a time, or three of 256. A step of two turns is 151 additions and multiplications, one of three
@@ -41,6 +43,91 @@ const ROWS: [(Instructions, &str, f64); 9] = [
     (Instructions::Baseline, "lie-poisson:321", 2.3),
     (Instructions::Baseline, "rk4", 2.7),
 ];
+
+/// The same under forces, against the scalar step of the method under them.
+const UNDER_FORCES: [(Instructions, &str, Forces, f64); 18] = {
+    use Forces::{Drag, Gradient, Gravity};
+    use Instructions::{Avx2, Baseline, Widest};
+    [
+        (Widest, "rk4", Gravity, 8.4),
+        (Widest, "rk4", Gradient, 15.0),
+        (Widest, "rk4", Drag, 18.0),
+        (Widest, "two-turn:31", Gravity, 9.5),
+        (Widest, "two-turn:31", Gradient, 15.0),
+        (Widest, "lie-poisson:321", Gradient, 15.0),
+        (Avx2, "rk4", Gravity, 5.8),
+        (Avx2, "rk4", Gradient, 12.0),
+        (Avx2, "rk4", Drag, 13.8),
+        (Avx2, "two-turn:31", Gravity, 6.5),
+        (Avx2, "two-turn:31", Gradient, 12.0),
+        (Avx2, "lie-poisson:321", Gradient, 12.0),
+        (Baseline, "rk4", Gravity, 3.1),
+        (Baseline, "rk4", Gradient, 7.0),
+        (Baseline, "rk4", Drag, 8.1),
+        (Baseline, "two-turn:31", Gravity, 3.8),
+        (Baseline, "two-turn:31", Gradient, 7.0),
+        (Baseline, "lie-poisson:321", Gradient, 7.0),
+    ]
+};
+
+/// How many thousands of bodies are prepared and read while the scalar rk4 takes a million steps.
+const SET_UPS: [(&str, f64); 4] =
+    [("rk4", 53.0), ("two-turn:31", 18.0), ("two-turn", 11.0), ("lie-poisson", 9.0)];
+
+/// What acts on all members.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Forces {
+    Gravity,
+    /// A gravity gradient on an ellipse.
+    Gradient,
+    Drag,
+}
+
+impl Forces {
+    fn on(self, inertia: Inertia) -> Body {
+        let force = match self {
+            Forces::Gravity => Force::gravity(Vector3::new(0.1, 0.0, 0.5)),
+            Forces::Gradient => Force::gravity_gradient(0.05, 0.1),
+            Forces::Drag => Force::drag(1e-3, 1e-4),
+        };
+        Body::free(inertia).with(force.expect("a valid force"))
+    }
+}
+
+/// Whether the processor has them.
+fn has(instructions: Instructions) -> bool {
+    #[cfg(target_arch = "x86_64")]
+    return match instructions {
+        Instructions::Baseline => true,
+        Instructions::Avx2 => is_x86_feature_detected!("avx2"),
+        _ => {
+            is_x86_feature_detected!("avx512f")
+                && is_x86_feature_detected!("avx512dq")
+                && is_x86_feature_detected!("avx512vl")
+        }
+    };
+    #[cfg(not(target_arch = "x86_64"))]
+    return instructions == Instructions::Baseline;
+}
+
+/// Their name: the widest sets that there are steps for.
+fn name_of(instructions: Instructions) -> &'static str {
+    match instructions {
+        Instructions::Baseline => "baseline",
+        Instructions::Avx2 => "avx2",
+        _ => "avx512",
+    }
+}
+
+/// Steps of one body alone.
+fn alone(name: &str, body: &Body) -> impl FnMut(u64) + use<> {
+    let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3)).expect("a valid start");
+    let mut step: Box<dyn Step<f64>> =
+        method(name).expect("a method").prepare_f64(Clock::new(STEP), body).expect("a valid step");
+    let mut x: Point<f64> = body.enter(&start).expect("a valid start").to_f64();
+    step.open(&mut x);
+    move |n| step.advance(black_box(&mut x), n)
+}
 
 /// Different bodies and starts.
 fn members(count: u64) -> Ensemble {
@@ -104,41 +191,85 @@ fn main() -> ExitCode {
         if ratio < 0.5 * known { "  less than half of what it was" } else { "" }
     };
 
-    let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0]).expect("valid moments"));
-    let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3)).expect("a valid start");
-    let rk4 = method("rk4").expect("a method");
-    let mut step: Box<dyn Step<f64>> = rk4.prepare_f64(Clock::new(STEP), &body).expect("a valid step");
-    let mut x: Point<f64> = body.enter(&start).expect("a valid start").to_f64();
-    step.open(&mut x);
-    let mut alone = || step.advance(black_box(&mut x), REFERENCE);
+    let inertia = || Inertia::from_moments([1.0, 2.0, 3.0]).expect("valid moments");
+    let mut steps = alone("rk4", &Body::free(inertia()));
+    let mut alone_rk4 = || steps(REFERENCE);
 
-    println!(
-        "{:10} {:16} {:>14} {:>12} {:>8} {:>20}",
-        "", "", "ns/body-step", "million/s", "ratio", "us to prepare, read"
-    );
+    println!("{:10} {:16} {:>14} {:>12} {:>8}", "", "", "ns/body-step", "million/s", "ratio");
     let mut scalar = f64::INFINITY;
     for (instructions, name, known) in ROWS {
+        let set = name_of(instructions);
+        if !has(instructions) {
+            println!("{set:10} {name:16} {:>14}", "not measured");
+            continue;
+        }
         let ensemble = members(MEMBERS).by(instructions);
         let [reference, few, many] = least(
-            [&mut alone, &mut || advance(&ensemble, name, FEW), &mut || advance(&ensemble, name, MANY)],
+            [&mut alone_rk4, &mut || advance(&ensemble, name, FEW), &mut || advance(&ensemble, name, MANY)],
             BURSTS,
         );
         let reference = reference / REFERENCE as f64;
         scalar = scalar.min(reference);
         // what preparing the members takes is no part of a step
         let each = (many - few) / ((MANY - FEW) * MEMBERS) as f64;
-        let rest = few / MEMBERS as f64 - FEW as f64 * each;
         let ratio = reference / each;
-        let set = format!("{instructions:?}").to_lowercase();
         println!(
-            "{set:10} {name:16} {:14.2} {:12.0} {ratio:8.1} {:20.2}{}",
+            "{set:10} {name:16} {:14.2} {:12.0} {ratio:8.1}{}",
             1e9 * each,
             1e-6 / each,
-            1e6 * rest,
             judge(ratio, known)
         );
     }
     println!("{:10} {:16} {:14.2} {:12.0} {:8.1}", "scalar", "rk4", 1e9 * scalar, 1e-6 / scalar, 1.0);
+
+    println!("under forces, and the same step of one body alone:");
+    println!(
+        "{:10} {:16} {:10} {:>14} {:>12} {:>14} {:>8}",
+        "", "", "", "ns/body-step", "million/s", "alone, ns", "ratio"
+    );
+    for (instructions, name, forces, known) in UNDER_FORCES {
+        let set = name_of(instructions);
+        let what = format!("{forces:?}").to_lowercase();
+        if !has(instructions) {
+            println!("{set:10} {name:16} {what:10} {:>14}", "not measured");
+            continue;
+        }
+        let ensemble = members(MEMBERS).by(instructions);
+        let ensemble = ensemble.acted_on(move |inertia| Ok::<_, MemberError>(forces.on(inertia)));
+        let mut steps = alone(name, &forces.on(inertia()));
+        let [reference, few, many] = least(
+            [&mut || steps(REFERENCE / 4), &mut || advance(&ensemble, name, FEW), &mut || {
+                advance(&ensemble, name, MANY)
+            }],
+            BURSTS,
+        );
+        let reference = 4.0 * reference / REFERENCE as f64;
+        let each = (many - few) / ((MANY - FEW) * MEMBERS) as f64;
+        let ratio = reference / each;
+        println!(
+            "{set:10} {name:16} {what:10} {:14.2} {:12.0} {:14.1} {ratio:8.1}{}",
+            1e9 * each,
+            1e-6 / each,
+            1e9 * reference,
+            judge(ratio, known)
+        );
+    }
+
+    println!("to prepare a body and to read it once, us:");
+    let some = members(SET_UP);
+    let acted = members(SET_UP).acted_on(|inertia| Ok::<_, MemberError>(Forces::Gradient.on(inertia)));
+    for (name, known) in SET_UPS {
+        let [free, under] =
+            least([&mut || advance(&some, name, 1), &mut || advance(&acted, name, 1)], 10 * BURSTS);
+        let each = |total: f64| 1e6 * total / SET_UP as f64;
+        let steps = 1e6 * scalar / each(free);
+        println!(
+            "{name:16} free {:.2}, under a gravity gradient {:.2}{}",
+            each(free),
+            each(under),
+            judge(steps * 1e3, known)
+        );
+    }
 
     fused::table(BURSTS);
 

@@ -6,7 +6,7 @@ use std::collections::HashSet;
 use std::sync::{Arc, Mutex};
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use polhode::body::{Body, Clock, Conserved, Force, State, StateError};
+use polhode::body::{Body, Clock, Conserved, Force, Orbit, State, StateError};
 use polhode::events::Event;
 use polhode::flow::{FreeMotion, LagrangeTop};
 use polhode::inertia::Inertia;
@@ -90,6 +90,10 @@ fn bits(states: &[Vec<State>]) -> Vec<u64> {
     numbers.map(f64::to_bits).collect()
 }
 
+/// Methods that move bodies under forces in lanes.
+const UNDER_FORCES: [&str; 6] =
+    ["rk4", "rk4-normalized", "two-turn", "two-turn:31@suzuki-4", "lie-poisson", "lie-poisson@suzuki-4"];
+
 const SETS: [Instructions; 3] = [Instructions::Widest, Instructions::Avx2, Instructions::Baseline];
 
 #[test]
@@ -132,9 +136,77 @@ fn a_member_has_the_bits_of_its_own_run() {
     }
 }
 
+/// Everything that may act in lanes, alone and together, on an orbit that all share.
+fn forces() -> Vec<(&'static str, Vec<Force>)> {
+    let gravity = || Force::gravity(Vector3::new(0.3, -0.2, 2.0)).unwrap();
+    let circle = || Force::gravity_gradient(0.8, 0.0).unwrap();
+    let hyperbola = Orbit::conic(2.0, 1.2, 1.7).unwrap().passing_at(6.0).unwrap();
+    let flyby = Force::gravity_gradient_on(hyperbola.in_plane([0.3, 0.8, 1.1]).unwrap());
+    let drag = |quadratic| Force::drag(0.05, quadratic).unwrap();
+    vec![
+        ("gravity", vec![gravity()]),
+        ("circle", vec![circle()]),
+        ("ellipse", vec![Force::gravity_gradient(0.8, 0.3).unwrap()]),
+        ("flyby", vec![flyby, gravity()]),
+        ("drag", vec![drag(0.0)]),
+        ("drag that grows", vec![drag(0.02), gravity()]),
+        ("all", vec![drag(0.02), gravity(), circle()]),
+    ]
+}
+
+fn acted_on(forces: &[Force], number: usize, framed: bool) -> (Ensemble, Vec<Inertia>) {
+    let forces = forces.to_vec();
+    let mut ensemble = Ensemble::new().acted_on(move |inertia| {
+        Ok::<_, StateError>(forces.iter().cloned().fold(Body::free(inertia), Body::with))
+    });
+    let mut inertias = Vec::new();
+    for k in 0..number {
+        // tensors along the body axes and across them in turn
+        let tensor = inertia(k).tensor() + Matrix3::new(0.0, 0.1, 0.0, 0.1, 0.0, -0.05, 0.0, -0.05, 0.0);
+        let inertia = if framed && k % 2 == 0 { Inertia::from_tensor(tensor).unwrap() } else { inertia(k) };
+        ensemble.push_omega(&inertia, attitude(k), omega(k));
+        inertias.push(inertia);
+    }
+    (ensemble, inertias)
+}
+
+#[test]
+fn a_member_under_forces_has_the_bits_of_its_own_run() {
+    const COUNT: usize = 66;
+    let (clock, steps) = (Clock { start: 5.0, step: 0.005 }, [0, 7, 8, 100]);
+    for name in UNDER_FORCES {
+        for (what, forces) in forces() {
+            let body =
+                |inertia: &Inertia| forces.iter().cloned().fold(Body::free(inertia.clone()), Body::with);
+            if method(name).unwrap().prepare_f64(clock, &body(&inertia(0))).is_err() {
+                assert!(what.contains("drag") || what == "all", "{name}, {what}");
+                continue;
+            }
+            let (ensemble, inertias) = acted_on(&forces, COUNT, true);
+            let all = SETS.map(|set| {
+                let (ensemble, _) = acted_on(&forces, COUNT, true);
+                bits(&advanced(&ensemble.by(set), name, clock, &steps))
+            });
+            assert!(all[0] == all[1] && all[0] == all[2], "{name}, {what}");
+            let found = advanced(&ensemble, name, clock, &steps);
+            for (k, inertia) in inertias.iter().enumerate() {
+                let body = body(inertia);
+                let start = body.enter_omega(attitude(k).into(), omega(k).into()).unwrap();
+                let run = Run::from_point(&method(name).unwrap(), &body, start.to_f64(), clock).unwrap();
+                let mut run = run.watching(Watch::Never);
+                for (time, &steps) in steps.iter().enumerate() {
+                    let alone = run.advance_to(steps).unwrap().state;
+                    let (alone, together) = (vec![vec![alone]], vec![vec![found[time][k]]]);
+                    assert_eq!(bits(&alone), bits(&together), "{name}, {what}, member {k}, {steps} steps");
+                }
+            }
+        }
+    }
+}
+
 /// As the documentation of [`Ensemble::advance`] says.
 #[test]
-fn splittings_by_turns_and_rk4_move_free_bodies_in_lanes() {
+fn splittings_by_turns_and_rk4_move_bodies_in_lanes() {
     let in_lanes = |name: &str, body: &Body| {
         let mut step = method(name).unwrap().prepare_f64(Clock::new(0.01), body).unwrap();
         step.open(&mut body.enter_omega(attitude(0).into(), omega(0).into()).unwrap().to_f64());
@@ -146,8 +218,8 @@ fn splittings_by_turns_and_rk4_move_free_bodies_in_lanes() {
     {
         assert!(in_lanes(name, &free), "{name}");
     }
-    for name in ["lie-poisson", "rk4"] {
-        assert!(!in_lanes(name, &heavy), "{name}");
+    for name in UNDER_FORCES {
+        assert!(in_lanes(name, &heavy), "{name}");
     }
     for name in ["implicit-midpoint", "kick-drift", "dop853"] {
         assert!(!in_lanes(name, &free), "{name}");
@@ -183,15 +255,24 @@ fn exact_motion_has_the_bits_of_each_member_alone() {
 
 #[test]
 fn parts_of_an_ensemble_have_the_bits_of_the_whole() {
-    let clock = Clock::new(0.01);
-    let whole = advanced(&members(0..100), "two-turn", clock, &[50]);
-    for shards in [3, 16] {
-        let mut together = vec![Vec::new()];
-        for shard in 0..shards {
-            let numbers = (0..100).filter(|k| k * shards / 100 == shard);
-            together[0].extend(advanced(&members(numbers), "two-turn", clock, &[50]).remove(0));
+    let clock = Clock::new(0.005);
+    for (what, forces) in [("nothing", Vec::new())].into_iter().chain(forces()) {
+        let name = if what.contains("drag") || what == "all" { "rk4" } else { "two-turn" };
+        let some = |numbers: &mut dyn Iterator<Item = usize>| {
+            let forces = forces.clone();
+            let acted_on = members(numbers).acted_on(move |inertia| {
+                Ok::<_, StateError>(forces.iter().cloned().fold(Body::free(inertia), Body::with))
+            });
+            advanced(&acted_on, name, clock, &[50])
+        };
+        let whole = some(&mut (0..100));
+        for shards in [2, 16] {
+            let mut together = vec![Vec::new()];
+            for shard in 0..shards {
+                together[0].extend(some(&mut (0..100).filter(|k| k * shards / 100 == shard)).remove(0));
+            }
+            assert_eq!(bits(&whole), bits(&together), "{what}, {shards} shards");
         }
-        assert_eq!(bits(&whole), bits(&together), "{shards} shards");
     }
 }
 

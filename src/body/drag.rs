@@ -7,9 +7,9 @@ use crate::rotation::{Quat, Vec3};
 
 /// τ = −c₁ ω − c₂ |ω| ω.
 #[derive(Clone, Copy, Debug)]
-struct Drag {
-    linear: f64,
-    quadratic: f64,
+pub(crate) struct Drag {
+    pub(crate) linear: f64,
+    pub(crate) quadratic: f64,
 }
 
 impl Force {
@@ -24,14 +24,23 @@ impl Force {
                 return Err(ForceError::Negative { force: NAME, quantity, value });
             }
         }
-        Ok(Force::torque(NAME, Drag { linear, quadratic }))
+        let drag = Drag { linear, quadratic };
+        Ok(Force { drag: Some(drag), ..Force::torque(NAME, drag) })
     }
 }
 
 impl<S: Real> Torque<S> for Drag {
     fn torque(&self, _: Time, _: Quat<S>, omega_body: Vec3<S>) -> Vec3<S> {
+        if self.quadratic == 0.0 { self.of::<false, S>(omega_body) } else { self.of::<true, S>(omega_body) }
+    }
+}
+
+impl Drag {
+    /// The torque, where it is known whether c₂ is zero.
+    #[inline(always)]
+    pub(crate) fn of<const QUADRATIC: bool, S: Real>(&self, omega_body: Vec3<S>) -> Vec3<S> {
         let mut coefficient = S::of(self.linear);
-        if self.quadratic != 0.0 {
+        if QUADRATIC {
             coefficient = coefficient + S::of(self.quadratic) * omega_body.norm();
         }
         -(omega_body * coefficient)

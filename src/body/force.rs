@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use nalgebra::{UnitQuaternion, Vector3};
 
+use super::drag::Drag;
 use super::law::{Conserved, Law, Potential, SeriesLaw, Torque};
 use super::orbit::Orbit;
 use super::switched::Switched;
@@ -26,6 +27,8 @@ pub struct Force {
     pub(crate) series: Option<SeriesLaw>,
     /// Of a gravity gradient, which takes the tensor of the body that it acts on.
     pub(super) orbit: Option<Orbit>,
+    /// Of drag.
+    pub(super) drag: Option<Drag>,
     /// Of a force that does not act always.
     pub(super) switched: Option<Switched>,
 }
@@ -38,7 +41,7 @@ impl Force {
     {
         let law = Arc::new(potential);
         let series = Some(SeriesLaw::Potential(law.clone()));
-        Force { name: name.into(), law: Law::Potential(law), series, orbit: None, switched: None }
+        Force { name: name.into(), law: Law::Potential(law), series, orbit: None, drag: None, switched: None }
     }
 
     /// The torque `torque`, called `name` in messages.
@@ -48,7 +51,7 @@ impl Force {
     {
         let law = Arc::new(torque);
         let series = Some(SeriesLaw::Torque(law.clone()));
-        Force { name: name.into(), law: Law::Torque(law), series, orbit: None, switched: None }
+        Force { name: name.into(), law: Law::Torque(law), series, orbit: None, drag: None, switched: None }
     }
 
     /// A potential by two closures of the attitude, body → space: energy in J, and torque in N m, body axes.
@@ -62,7 +65,7 @@ impl Force {
         T: Fn(UnitQuaternion<f64>) -> Vector3<f64> + Send + Sync + 'static,
     {
         let law = Law::Potential(Arc::new(PotentialFn { energy, torque }));
-        Force { name: name.into(), law, series: None, orbit: None, switched: None }
+        Force { name: name.into(), law, series: None, orbit: None, drag: None, switched: None }
     }
 
     /// A torque, N m, body axes, by a closure of the time (s), the attitude (body → space) and the angular velocity
@@ -87,7 +90,7 @@ impl Force {
         T: Fn(f64, UnitQuaternion<f64>, Vector3<f64>) -> Vector3<f64> + Send + Sync + 'static,
     {
         let law = Law::Torque(Arc::new(TorqueFn(torque)));
-        Force { name: name.into(), law, series: None, orbit: None, switched: None }
+        Force { name: name.into(), law, series: None, orbit: None, drag: None, switched: None }
     }
 
     /// The same force, a gravity gradient on the orbit `orbit`.

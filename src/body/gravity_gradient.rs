@@ -102,12 +102,28 @@ impl GravityGradient {
     }
 
     fn times<S: Real>(&self, v: Vec3<S>) -> Vec3<S> {
-        let row = |k: usize| {
-            let entry = |j: usize| S::of(self.tensor[(k, j)]);
-            entry(0) * v[0] + entry(1) * v[1] + entry(2) * v[2]
-        };
-        Vec3([row(0), row(1), row(2)])
+        times(&self.tensor, v)
     }
+}
+
+#[inline(always)]
+fn times<S: Real>(tensor: &Matrix3<f64>, v: Vec3<S>) -> Vec3<S> {
+    let row = |k: usize| {
+        let entry = |j: usize| S::of(tensor[(k, j)]);
+        entry(0) * v[0] + entry(1) * v[1] + entry(2) * v[2]
+    };
+    Vec3([row(0), row(1), row(2)])
+}
+
+/// The torque at `place`, on a body with the tensor `tensor`, kg m², body axes.
+#[inline(always)]
+pub(crate) fn gradient_torque<S: Real>(
+    tensor: &Matrix3<f64>,
+    place: &Place<S>,
+    attitude: Quat<S>,
+) -> Vec3<S> {
+    let r = attitude.rotate_back(place.direction);
+    r.cross(times(tensor, r)) * place.strength
 }
 
 impl<S: Real> Potential<S> for GravityGradient {
@@ -117,8 +133,7 @@ impl<S: Real> Potential<S> for GravityGradient {
     }
 
     fn torque(&self, at: Time, attitude: Quat<S>) -> Vec3<S> {
-        let (strength, r) = self.position(at, attitude);
-        r.cross(self.times(r)) * strength
+        gradient_torque(&self.tensor, &self.orbit.at(at), attitude)
     }
 
     fn conserved(&self) -> Vec<Conserved> {

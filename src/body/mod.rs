@@ -10,6 +10,7 @@ mod field;
 mod force;
 mod gravity;
 mod gravity_gradient;
+mod known_forces;
 mod law;
 mod linear_potential;
 mod orbit;
@@ -24,16 +25,19 @@ mod time;
 mod wheel;
 
 pub use body::{Body, Problem};
+pub(crate) use drag::Drag;
 pub use error::{ForceError, StateError};
 pub(crate) use exit::Exit;
 pub use field::{Field, Free};
 pub(crate) use field::{Forces, Witness};
 pub use force::Force;
-pub(crate) use gravity_gradient::CircularGradient;
+pub(crate) use gravity_gradient::{CircularGradient, gradient_torque};
+pub(crate) use known_forces::KnownForces;
 pub(crate) use law::Evaluated;
 pub use law::{Conserved, Potential, Torque};
 pub use linear_potential::{LinearPotential, vertical};
 pub use orbit::Orbit;
+pub(crate) use orbit::Place;
 pub(crate) use point::RENORMALIZE_EVERY;
 pub use point::{Phase, Point};
 #[cfg(any(test, feature = "random"))]

@@ -48,7 +48,7 @@ thread_local! {
 /// assert!(body.conserved().is_empty());
 /// # Ok::<(), polhode::Error>(())
 /// ```
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 #[must_use]
 pub struct Orbit {
     speed: Speed,
@@ -59,7 +59,7 @@ pub struct Orbit {
     plane: Option<Quat<Dd>>,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 enum Speed {
     /// The mean motion on a circle or an ellipse, rad/s.
     Mean(f64),
@@ -70,9 +70,10 @@ enum Speed {
 }
 
 /// 3 GM/r³ in 1/s², and the direction to the body in space.
-pub(super) struct Place<S> {
-    pub(super) strength: S,
-    pub(super) direction: Vec3<S>,
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place<S> {
+    pub(crate) strength: S,
+    pub(crate) direction: Vec3<S>,
 }
 
 impl Orbit {
@@ -193,7 +194,7 @@ impl Orbit {
         (self.eccentricity == 0.0 && self.plane.is_none()).then_some(rate)
     }
 
-    pub(super) fn at<S: Real>(&self, at: Time) -> Place<S> {
+    pub(crate) fn at<S: Real>(&self, at: Time) -> Place<S> {
         // the bits of a time from which nothing is taken stay
         let at = if self.passage == 0.0 { at } else { at.later(Dd::of(-self.passage)) };
         let in_plane = |(strength, [x, y]): (S, [S; 2])| (strength, Vec3([x, y, S::of(0.0)]));

@@ -48,12 +48,28 @@ impl<S: Real> Casimir<S> {
     #[inline]
     pub(super) fn turn(&self, t: S, m: Vec3<S>) -> Quat<S> {
         // of half of the half angle, from its square: 1 − cos without cancellation, and no root
-        let rate = t * self.inverse_moment * S::of(0.25);
-        let squared = m.norm_squared() * (rate * rate);
-        let (sinc, cos) = squared.sinc_cos_of_root();
-        let twice = sinc + sinc;
-        Quat::new(-(twice * sinc * squared), m * (twice * cos * rate))
+        let rate = self.quarter_rate(t);
+        quarters(rate, m, quarter_squared(rate, m).sinc_cos_of_root())
     }
+
+    /// A quarter of the angle in the time `t` over |m|.
+    #[inline]
+    pub(crate) fn quarter_rate(&self, t: S) -> S {
+        t * self.inverse_moment * S::of(0.25)
+    }
+}
+
+/// The square of a quarter of the angle.
+#[inline(always)]
+pub(crate) fn quarter_squared<S: Real>(rate: S, m: Vec3<S>) -> S {
+    m.norm_squared() * (rate * rate)
+}
+
+/// The quaternion of the turn, less one, by `sin x / x` and `cos x` of a quarter x of the angle.
+#[inline(always)]
+pub(crate) fn quarters<S: Real>(rate: S, m: Vec3<S>, (sinc, cos): (S, S)) -> Quat<S> {
+    let twice = sinc + sinc;
+    Quat::new(-(twice * sinc * quarter_squared(rate, m)), m * (twice * cos * rate))
 }
 
 impl<S: Real> Flow<S> for Casimir<S> {

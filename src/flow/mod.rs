@@ -24,6 +24,7 @@ mod scaled;
 mod turn;
 
 pub use casimir::Casimir;
+pub(crate) use casimir::{quarter_squared, quarters};
 pub use derivative::{DerivativeError, TurnAxes};
 pub use dissipation::Dissipation;
 pub use exact_motion::{ExactMotion, NoClosedForm};

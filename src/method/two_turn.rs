@@ -7,8 +7,9 @@ use thiserror::Error;
 
 use super::schemes::{Pairs, STRANG, Scheme, Stages};
 use super::{Cost, Energy, FreePart, Map, Method, SideBySide, Symmetric, WheelSplit};
-use crate::body::{Field, Point, Rotor, Time};
+use crate::body::{Clock, Field, Point, Rotor, Time};
 use crate::flow::{Casimir, Flow};
+use crate::method::contract::lanes::LaneFlow;
 use crate::method::solve::modified_energy::{ModifiedEnergy, Orbit, PhaseErrorRates, of_least_error};
 use crate::method::solve::turns::Turns;
 use crate::num::{Dd, Precise, Real};
@@ -110,7 +111,7 @@ impl TwoAxes {
     /// With α, β, γ the reciprocal moments of outer, reference and inner axis,
     /// `24 H₃ = (α−β)²(β−γ) s_o s_j − (α−β)(β−γ)(α+β−2γ) s_o s_i + 2(α−β)(β−γ)² s_j s_i`
     /// (symmetric Baker–Campbell–Hausdorff series).
-    fn leading_term(self, moments: Vec3<f64>) -> ModifiedEnergy {
+    pub(in crate::method) fn leading_term(self, moments: Vec3<f64>) -> ModifiedEnergy {
         let [o, i] = self.0;
         let j = self.reference();
         let [alpha, beta, gamma] = [o, j, i].map(|k| 1.0 / moments[k]);
@@ -256,8 +257,18 @@ impl<S: Precise> Map<S> for TwoTurnMap<S> {
         self.turns.advance(x);
     }
 
+    #[inline]
+    fn advance_by(&mut self, n: u64, _: &Clock, x: &mut Point<S>) {
+        self.turns.advance_by(n, x);
+    }
+
     fn side_by_side(&self) -> Option<SideBySide<S>> {
         self.turns.side_by_side()
+    }
+
+    fn part_side_by_side(&self) -> Option<SideBySide<S>> {
+        let ball = (LaneFlow::Ball, self.ball.quarter_rate(S::from_dd(self.h)));
+        Some(SideBySide::flows([ball].into_iter().chain(self.turns.flows())))
     }
 
     #[inline]

@@ -98,7 +98,7 @@ mod tests {
             let mut point = || {
                 let q = Quat::from_components([number(), number(), number(), number()]).normalized();
                 let mut x = Point::new(q, Vec3([number(), number(), number()]));
-                (0..steps).for_each(|_| x.count_step());
+                (0..steps).for_each(|_| x.count_steps(1));
                 steps += 7;
                 x
             };

@@ -47,6 +47,9 @@ impl Circulating {
     }
 }
 
+/// Fewer times than these are taken one by one.
+const FEW: usize = 8;
+
 impl FreeOrbit {
     /// Of a body with the principal `moments`, from `start` at t = 0.
     pub(crate) fn new(moments: Vec3<Dd>, start: Point<Dd>) -> Self {
@@ -93,6 +96,8 @@ impl FreeOrbit {
         let mut lanes = Points::new();
         for (block, times) in times.chunks(LANES).enumerate() {
             let together = match &self.kind {
+                // what a block takes is as long as a dozen single times
+                Kind::Circulating(_) if times.len() < FEW => false,
                 Kind::Circulating(orbit) => {
                     let mut t = Lane::ZERO;
                     t[..times.len()].copy_from_slice(times);

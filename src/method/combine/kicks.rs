@@ -2,7 +2,8 @@
 
 use crate::body::{Field, Point, Rotor, Time};
 use crate::flow::{Flow, Kick};
-use crate::method::{Map, Method};
+use crate::method::contract::lanes::LaneFlow;
+use crate::method::{Map, Method, SideBySide};
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
 
@@ -43,6 +44,10 @@ impl<S: Real, F: Field<S>> KickMap<S, F> {
 }
 
 impl<S: Real, F: Field<S>> Map<S> for KickMap<S, F> {
+    fn part_side_by_side(&self) -> Option<SideBySide<S>> {
+        self.gradient.is_none().then(|| SideBySide::flows([(LaneFlow::Kick(Dd::ZERO), self.h)]))
+    }
+
     #[inline]
     fn apply(&mut self, at: Time, x: &mut Point<S>) {
         let gradient = self.gradient.zip(self.kick.field().linear_part()).map(|(gradient, linear)| {

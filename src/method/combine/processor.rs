@@ -2,7 +2,7 @@
 
 use super::schemes::Part;
 use crate::body::{Point, Time};
-use crate::method::Map;
+use crate::method::{Map, SideBySide};
 use crate::num::{Dd, Real};
 
 /// A map and the time at which it begins, s since the beginning of the step.
@@ -19,6 +19,14 @@ impl<M> Timed<M> {
         M: Map<S>,
     {
         self.map.apply(at.later(self.begun), x);
+    }
+
+    /// As [`Map::part_side_by_side`], with the time at which it begins.
+    pub(in crate::method) fn part_side_by_side<S: Real>(&self) -> Option<(Dd, SideBySide<S>)>
+    where
+        M: Map<S>,
+    {
+        Some((self.begun, self.map.part_side_by_side()?))
     }
 }
 

@@ -1,7 +1,7 @@
 //! One step of a splitting: its maps in turn, and what is merged where steps meet.
 
 use super::processor::{Processor, Timed};
-use crate::body::{Point, Time};
+use crate::body::{Clock, Point, Time};
 use crate::method::{Map, SideBySide};
 use crate::num::{Dd, Real};
 
@@ -93,6 +93,17 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
     }
 
     #[inline]
+    fn advance_by(&mut self, n: u64, clock: &Clock, x: &mut Point<S>) {
+        if let (Ends::OfA, [(a, _)]) = (&self.ends, &mut self.pairs[..]) {
+            return a.map.advance_by(n, clock, x);
+        }
+        for _ in 0..n {
+            self.advance(clock.at(x.steps()), x);
+            x.count_steps(1);
+        }
+    }
+
+    #[inline]
     fn close(&mut self, at: Time, x: &mut Point<S>) {
         match (&mut self.ends, &mut self.pairs[..]) {
             (Ends::OfA, [(a, _)]) => a.map.close(at, x),
@@ -112,7 +123,18 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
     fn side_by_side(&self) -> Option<SideBySide<S>> {
         match (&self.ends, &self.pairs[..]) {
             (Ends::OfA, [(a, _)]) if self.processor.is_empty() => a.map.side_by_side(),
-            _ => None,
+            (Ends::OfA | Ends::A { .. }, _) => None,
+            (Ends::B { merged, .. }, [pairs @ .., (last, _)]) => {
+                let pairs = pairs.iter().flat_map(|(a, b)| [a.part_side_by_side(), b.part_side_by_side()]);
+                let parts = pairs.chain([last.part_side_by_side(), merged.part_side_by_side()]);
+                SideBySide::chained(parts.collect::<Option<Vec<_>>>()?)
+            }
+            (Ends::B { .. } | Ends::Apart, pairs) => {
+                let pairs = pairs.iter().flat_map(|(a, b)| [a.part_side_by_side(), b.part_side_by_side()]);
+                let opening = self.opening.iter().map(Timed::part_side_by_side);
+                let parts = opening.chain(pairs).chain(self.closing.iter().map(Timed::part_side_by_side));
+                SideBySide::chained(parts.collect::<Option<Vec<_>>>()?)
+            }
         }
     }
 

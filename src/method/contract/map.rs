@@ -121,6 +121,16 @@ pub trait Map<S: Real>: Send + 'static {
         self.apply(at, x);
     }
 
+    /// `n` steps in that form, which are counted.
+    #[doc(hidden)]
+    #[inline]
+    fn advance_by(&mut self, n: u64, clock: &Clock, x: &mut Point<S>) {
+        for _ in 0..n {
+            self.advance(clock.at(x.steps()), x);
+            x.count_steps(1);
+        }
+    }
+
     /// Takes that form to one with the energy and the momenta of the state, from which it differs by no more than a turn
     /// about the momentum.
     #[inline]
@@ -155,6 +165,11 @@ pub trait Map<S: Real>: Send + 'static {
         None
     }
 
+    /// As [`side_by_side`](Self::side_by_side), of [`apply`](Self::apply), for a map that is a part of another.
+    fn part_side_by_side(&self) -> Option<SideBySide<S>> {
+        None
+    }
+
     /// The worst relative residual at which an implicit solve ended; 0 for explicit maps.
     fn worst_residual(&self) -> f64 {
         0.0
@@ -181,6 +196,9 @@ impl<S: Real> Map<S> for Box<dyn Map<S>> {
     fn advance(&mut self, at: Time, x: &mut Point<S>) {
         (**self).advance(at, x);
     }
+    fn advance_by(&mut self, n: u64, clock: &Clock, x: &mut Point<S>) {
+        (**self).advance_by(n, clock, x);
+    }
     fn close(&mut self, at: Time, x: &mut Point<S>) {
         (**self).close(at, x);
     }
@@ -201,6 +219,9 @@ impl<S: Real> Map<S> for Box<dyn Map<S>> {
     }
     fn side_by_side(&self) -> Option<SideBySide<S>> {
         (**self).side_by_side()
+    }
+    fn part_side_by_side(&self) -> Option<SideBySide<S>> {
+        (**self).part_side_by_side()
     }
     fn worst_residual(&self) -> f64 {
         (**self).worst_residual()
@@ -348,10 +369,7 @@ impl<S: Real, M: Map<S>> Step<S> for Stepper<M> {
     }
 
     fn advance(&mut self, x: &mut Point<S>, n: u64) {
-        for _ in 0..n {
-            self.map.advance(self.clock.at(x.steps()), x);
-            x.count_step();
-        }
+        self.map.advance_by(n, &self.clock, x);
     }
 
     fn reading(&mut self, x: &Point<S>) -> Point<S> {

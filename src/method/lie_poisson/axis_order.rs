@@ -36,8 +36,7 @@ impl AxisOrder {
     #[must_use]
     pub fn best(moments: Vec3<f64>) -> Self {
         let mut best = (f64::INFINITY, AxisOrder([2, 1, 0]));
-        for order in Self::ALL {
-            let size = order.energy_oscillation(moments);
+        for (order, size) in Self::ALL.into_iter().zip(Self::energy_oscillations(moments)) {
             if size < best.0 {
                 best = (size, order);
             }
@@ -54,15 +53,28 @@ impl AxisOrder {
     /// + (−ab² + 2abc − ac² − 2b²c + bc²) m₂²m₃²`; the part in the span of H², HC and C² is constant and drops out.
     #[must_use]
     pub fn energy_oscillation(self, moments: Vec3<f64>) -> f64 {
-        let [outer, middle, inner] = self.0;
-        let (a, b, c) = (1.0 / moments[inner], 1.0 / moments[middle], 1.0 / moments[outer]);
-        let h3 = Quadratic::mixed(self.leading_term(moments).0, [inner, middle, outer]);
-        let h = [0.5 * a, 0.5 * b, 0.5 * c];
-        let constants = [
-            Quadratic::linear_product([1.0; 3], [1.0; 3]),
-            Quadratic::linear_product(h, [1.0; 3]),
-            Quadratic::linear_product(h, h),
-        ];
+        let found = Self::ALL.iter().position(|order| *order == self);
+        Self::energy_oscillations(moments)[found.unwrap_or(0)]
+    }
+
+    /// That of each of [`ALL`](Self::ALL): what is summed up for one order waits for nothing of the others.
+    fn energy_oscillations(moments: Vec3<f64>) -> Six {
+        let mut all = [Quadratics([[0.0; 6]; 6]); 4];
+        for (n, order) in Self::ALL.into_iter().enumerate() {
+            let [outer, middle, inner] = order.0;
+            let (a, b, c) = (1.0 / moments[inner], 1.0 / moments[middle], 1.0 / moments[outer]);
+            let h = [0.5 * a, 0.5 * b, 0.5 * c];
+            let forms = [
+                mixed(order.leading_term(moments).0, [inner, middle, outer]),
+                linear_product([1.0; 3], [1.0; 3]),
+                linear_product(h, [1.0; 3]),
+                linear_product(h, h),
+            ];
+            for (quadratics, form) in all.iter_mut().zip(forms) {
+                quadratics.0.iter_mut().zip(form).for_each(|(six, coefficient)| six[n] = coefficient);
+            }
+        }
+        let [h3, constants @ ..] = all;
         h3.outside(constants)
     }
 
@@ -90,7 +102,7 @@ impl AxisOrder {
         of_least_error(candidates, m, moments).unwrap_or_else(|| Self::best(moments))
     }
 
-    fn leading_term(self, moments: Vec3<f64>) -> ModifiedEnergy {
+    pub(in crate::method) fn leading_term(self, moments: Vec3<f64>) -> ModifiedEnergy {
         let [outer, middle, inner] = self.0;
         let (a, b, c) = (1.0 / moments[inner], 1.0 / moments[middle], 1.0 / moments[outer]);
         let mut mixed = [0.0; 3];
@@ -102,61 +114,88 @@ impl AxisOrder {
     }
 }
 
-/// A quadratic form in the squares s_i = m_i²: coefficients of s₁², s₂², s₃², s₂s₃, s₁s₃, s₁s₂.
+/// A number of each of the six orders.
+type Six = [f64; 6];
+
+/// Six quadratic forms in the squares s_i = m_i²: coefficients of s₁², s₂², s₃², s₂s₃, s₁s₃, s₁s₂.
 #[derive(Clone, Copy)]
-struct Quadratic([f64; 6]);
+struct Quadratics([Six; 6]);
 
-impl Quadratic {
-    /// Σ κ_i s_j s_k, the axes in the order `axes`.
-    fn mixed(coefficients: [f64; 3], axes: [usize; 3]) -> Self {
-        let [k1, k2, k3] = axes.map(|axis| coefficients[axis]);
-        Quadratic([0.0, 0.0, 0.0, k1, k2, k3])
+/// Of the products of two of the squares of squares, the mean over the sphere times (3/2)₄: E s^α = Π (½)_{α_i} / (3/2)₄ for |α| = 4.
+const MOMENTS: [[f64; 6]; 6] = {
+    const POWERS: [[usize; 3]; 6] = [[2, 0, 0], [0, 2, 0], [0, 0, 2], [0, 1, 1], [1, 0, 1], [1, 1, 0]];
+    const RISING_HALF: [f64; 5] = [1.0, 0.5, 0.75, 1.875, 6.5625];
+    let (mut moments, mut n) = ([[0.0; 6]; 6], 0);
+    while n < 36 {
+        let (p, q) = (POWERS[n / 6], POWERS[n % 6]);
+        moments[n / 6][n % 6] =
+            RISING_HALF[p[0] + q[0]] * RISING_HALF[p[1] + q[1]] * RISING_HALF[p[2] + q[2]];
+        n += 1;
     }
+    moments
+};
+const RISING_THREE_HALVES: f64 = 59.0625;
 
-    /// (u·s)(v·s).
-    fn linear_product(u: [f64; 3], v: [f64; 3]) -> Self {
-        let mixed = |i: usize, j: usize| u[i] * v[j] + u[j] * v[i];
-        Quadratic([u[0] * v[0], u[1] * v[1], u[2] * v[2], mixed(1, 2), mixed(0, 2), mixed(0, 1)])
-    }
+/// Coefficients of Σ κ_i s_j s_k, the axes in the order `axes`.
+fn mixed(coefficients: [f64; 3], axes: [usize; 3]) -> [f64; 6] {
+    let [k1, k2, k3] = axes.map(|axis| coefficients[axis]);
+    [0.0, 0.0, 0.0, k1, k2, k3]
+}
 
-    /// Mean of the product over the sphere: E s^α = Π (½)_{α_i} / (3/2)_4 for |α| = 4.
-    fn mean_product(self, other: Self) -> f64 {
-        const POWERS: [[usize; 3]; 6] = [[2, 0, 0], [0, 2, 0], [0, 0, 2], [0, 1, 1], [1, 0, 1], [1, 1, 0]];
-        const RISING_HALF: [f64; 5] = [1.0, 0.5, 0.75, 1.875, 6.5625];
-        const RISING_THREE_HALVES: f64 = 59.0625;
-        let mut sum = 0.0;
-        for (x, p) in self.0.iter().zip(POWERS) {
-            for (y, q) in other.0.iter().zip(POWERS) {
-                let moment: f64 = (0..3).map(|k| RISING_HALF[p[k] + q[k]]).product();
-                sum += x * y * moment;
+/// Coefficients of (u·s)(v·s).
+fn linear_product(u: [f64; 3], v: [f64; 3]) -> [f64; 6] {
+    let mixed = |i: usize, j: usize| u[i] * v[j] + u[j] * v[i];
+    [u[0] * v[0], u[1] * v[1], u[2] * v[2], mixed(1, 2), mixed(0, 2), mixed(0, 1)]
+}
+
+impl Quadratics {
+    /// Mean of the product over the sphere.
+    fn mean_product(&self, other: &Self) -> Six {
+        let mut sum = [0.0; 6];
+        for (x, moments) in self.0.iter().zip(&MOMENTS) {
+            for (y, moment) in other.0.iter().zip(moments) {
+                for n in 0..6 {
+                    sum[n] += x[n] * y[n] * moment;
+                }
             }
         }
-        sum / RISING_THREE_HALVES
+        sum.map(|sum| sum / RISING_THREE_HALVES)
     }
 
-    fn less(self, other: Self, times: f64) -> Self {
-        Quadratic([0, 1, 2, 3, 4, 5].map(|k| self.0[k] - times * other.0[k]))
+    /// Less its part along `direction`, of which the mean square is `squared`; nothing where that is none.
+    fn without(mut self, direction: &Self, squared: Six) -> Self {
+        let mut times = self.mean_product(direction);
+        for n in 0..6 {
+            times[n] = if squared[n] > 0.0 { times[n] / squared[n] } else { 0.0 };
+        }
+        for (six, along) in self.0.iter_mut().zip(&direction.0) {
+            for n in 0..6 {
+                six[n] -= times[n] * along[n];
+            }
+        }
+        self
     }
 
     /// Root mean square of what is orthogonal to the span of `others` (Gram–Schmidt; dependent ones are dropped).
-    fn outside(mut self, others: [Self; 3]) -> f64 {
-        let mut basis: Vec<(Self, f64)> = Vec::new();
+    fn outside(mut self, others: [Self; 3]) -> Six {
+        let mut basis: Vec<(Self, Six)> = Vec::with_capacity(3);
         for original in others {
             let mut direction = original;
             for _ in 0..2 {
                 for (b, squared) in &basis {
-                    direction = direction.less(*b, direction.mean_product(*b) / squared);
+                    direction = direction.without(b, *squared);
                 }
             }
-            let squared = direction.mean_product(direction);
-            if squared > 1e-20 * original.mean_product(original) {
-                basis.push((direction, squared));
+            let (mut squared, whole) = (direction.mean_product(&direction), original.mean_product(&original));
+            for n in 0..6 {
+                squared[n] = if squared[n] > 1e-20 * whole[n] { squared[n] } else { 0.0 };
             }
+            basis.push((direction, squared));
         }
         for (b, squared) in &basis {
-            self = self.less(*b, self.mean_product(*b) / squared);
+            self = self.without(b, *squared);
         }
-        self.mean_product(self).max(0.0).sqrt()
+        self.mean_product(&self).map(|square| square.max(0.0).sqrt())
     }
 }
 

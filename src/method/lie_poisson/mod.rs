@@ -6,7 +6,7 @@ pub use axis_order::{AxisOrder, AxisOrderError};
 
 use super::schemes::{STRANG, Scheme, Stages};
 use super::{Cost, Energy, FreePart, Kicks, Map, Method, SideBySide, Splitting, Symmetric, WheelSplit};
-use crate::body::{Field, Point, Rotor, Time};
+use crate::body::{Clock, Field, Point, Rotor, Time};
 use crate::method::solve::turns::Turns;
 use crate::num::{Dd, Precise};
 
@@ -130,8 +130,17 @@ impl<S: Precise> Map<S> for AxisSplitMap<S> {
         self.turns.advance(x);
     }
 
+    #[inline]
+    fn advance_by(&mut self, n: u64, _: &Clock, x: &mut Point<S>) {
+        self.turns.advance_by(n, x);
+    }
+
     fn side_by_side(&self) -> Option<SideBySide<S>> {
         self.turns.side_by_side()
+    }
+
+    fn part_side_by_side(&self) -> Option<SideBySide<S>> {
+        Some(SideBySide::flows(self.turns.flows()))
     }
 
     #[inline]

@@ -78,6 +78,20 @@ impl<S: Precise> Modulus<S> {
         let sn = if u < S::of(0.0) { -sn } else { sn };
         (sn, cotangent * sn, dn)
     }
+
+    /// Takes sin² z to sn²(2 K z/π) for each of `squares`, by Gauss's transformation (NIST DLMF 22.7(i)): the arguments do not
+    /// wait for each other.
+    pub(crate) fn sn_squared(&self, squares: &mut [S]) {
+        let one = S::of(1.0);
+        for &(arithmetic, geometric) in self.ladder[..self.steps].iter().rev() {
+            let k = (arithmetic - geometric) / (arithmetic + geometric);
+            let grown = (one + k) * (one + k);
+            for square in &mut *squares {
+                let shrunk = one + k * *square;
+                *square = grown * *square / (shrunk * shrunk);
+            }
+        }
+    }
 }
 
 /// (tanh u, sech u, sech u), the functions at m1 = 0.
@@ -131,4 +145,23 @@ pub fn jacobi<S: Precise>(u: S, m1: S) -> (S, S, S) {
 /// Infinite at sn = ±1 for m1 = 0.
 pub fn incomplete<S: Precise>(sn: S, cn: S, m: S, m1: S) -> S {
     sn * r_f(cn * cn, m1 + m * cn * cn, S::of(1.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn gausss_transformation_gives_the_squares_of_sn() {
+        for n in 0..=60 {
+            let modulus = Modulus::new(libm::exp2(-f64::from(n)));
+            for k in 0..48 {
+                let z = core::f64::consts::FRAC_PI_2 * (f64::from(k) + 0.5) / 48.0;
+                let mut square = [libm::sin(z) * libm::sin(z)];
+                modulus.sn_squared(&mut square);
+                let (sn, ..) = modulus.sn_cn_dn(modulus.quarter_period() * (f64::from(k) + 0.5) / 48.0);
+                approx::assert_relative_eq!(square[0], sn * sn, max_relative = 3e-15);
+            }
+        }
+    }
 }

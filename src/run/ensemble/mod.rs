@@ -238,9 +238,10 @@ impl Ensemble {
     /// Every member after the numbers of `steps`, ascending, by `method` and the steps of `clock`.
     ///
     /// `each` is given the members part by part, in their order. Rows have the bits of a [`Run`](super::Run) of the member
-    /// alone. The splittings by turns about axes, such as `two-turn` and `lie-poisson`, and `rk4` move free bodies side by side;
-    /// every other method, and bodies with forces, go member by member. Splittings whose axes are not given choose them by the
-    /// orbit of each start, which takes as long as some thousand steps in lanes: `two-turn:31` does not.
+    /// alone. The splittings by turns about axes, such as `two-turn` and `lie-poisson`, and `rk4` move bodies side by side: free
+    /// ones, and those on which uniform gravity, a gravity gradient and drag act, or some of these (drag with `rk4` alone, as
+    /// splittings do not take it). Members on one orbit share it. Every other method, and bodies with other forces, with forces that
+    /// are switched or with wheels, go member by member.
     ///
     /// # Errors
     /// Steps that descend, a step that is not usable or bodies that the method is not for, and what `each` returns; what befalls

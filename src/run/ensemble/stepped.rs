@@ -53,8 +53,7 @@ impl Course<'_> {
         // those of one kind behind each other, in their order
         let mut kinds: Vec<Vec<Member>> = Vec::new();
         for member in members {
-            let kernel = &member.side_by_side.kernel;
-            match kinds.iter_mut().find(|kind| kind[0].side_by_side.kernel == *kernel) {
+            match kinds.iter_mut().find(|kind| kind[0].side_by_side.is_like(&member.side_by_side)) {
                 Some(kind) => kind.push(member),
                 None => kinds.push(vec![member]),
             }
@@ -75,7 +74,7 @@ impl Course<'_> {
         if let Some(refusal) = step.refusal() {
             return Err(RunError::from(refusal.clone()).into());
         }
-        Ok(match step.side_by_side() {
+        Ok(match step.side_by_side().and_then(|steps| steps.of(&body)) {
             Some(side_by_side) => {
                 let observer = Observer::new(self, &body, start);
                 Entered::Lane(Box::new(Member { number, step, point, side_by_side, observer }))
@@ -87,8 +86,7 @@ impl Course<'_> {
     /// Takes the steps of at most [`LANES`] members of one kind.
     fn together(&self, members: &mut [Member], rows: &mut Rows) {
         let lanes: Vec<_> = members.iter().map(|member| (member.point, &member.side_by_side)).collect();
-        let Some(kernel) = lanes.first().map(|(_, side_by_side)| side_by_side.kernel.clone()) else { return };
-        let mut block = Block::new(&kernel, &lanes);
+        let Some(mut block) = Block::new(self.clock, &lanes) else { return };
         let mut alive = vec![true; members.len()];
         for (time, &steps) in self.steps.iter().enumerate() {
             block.advance(steps - block.steps(), self.ensemble.instructions);

@@ -1,8 +1,9 @@
 //! Points side by side.
 
 use super::SideBySide;
+use super::acting::Acting;
 use super::kernel::{self, Kernel};
-use crate::body::Point;
+use crate::body::{Clock, Point};
 use crate::num::{Instructions, LANES, Lane};
 
 /// Numbers of a point: attitude, momentum, and what rounding carries of each.
@@ -11,16 +12,19 @@ pub(super) const PARTS: usize = 14;
 /// Opened motions of one kind, which have taken the same number of steps.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
-    kernel: Kernel,
-    points: [Lane; PARTS],
-    constants: Vec<Lane>,
+    pub(super) kernel: Kernel,
+    pub(super) acting: Acting,
+    pub(super) clock: Clock,
+    pub(super) points: [Lane; PARTS],
+    pub(super) constants: Vec<Lane>,
     steps: u64,
 }
 
 impl Block {
     /// Of at most [`LANES`] points, each with the constants of its steps; lanes that are left repeat the first.
-    pub(crate) fn new(kernel: &Kernel, members: &[(Point<f64>, &SideBySide<f64>)]) -> Self {
-        let count = members.first().map_or(0, |(_, steps)| steps.constants.len());
+    pub(crate) fn new(clock: Clock, members: &[(Point<f64>, &SideBySide<f64>)]) -> Option<Self> {
+        let (first, SideBySide { kernel, acting, constants }) = members.first()?;
+        let count = constants.len();
         let (mut points, mut constants) = ([Lane::ZERO; PARTS], vec![Lane::ZERO; count]);
         let filled = members.iter().chain(members.first().into_iter().cycle()).take(LANES);
         for (n, (point, steps)) in filled.enumerate() {
@@ -31,8 +35,8 @@ impl Block {
                 lane[n] = *constant;
             }
         }
-        let steps = members.first().map_or(0, |(point, _)| point.steps());
-        Block { kernel: kernel.clone(), points, constants, steps }
+        let (kernel, acting, steps) = (kernel.clone(), acting.clone(), first.steps());
+        Some(Block { kernel, acting, clock, points, constants, steps })
     }
 
     /// Steps that each body has taken.
@@ -47,13 +51,12 @@ impl Block {
 
     /// Takes `n` steps.
     pub(crate) fn advance(&mut self, n: u64, instructions: Instructions) {
-        let Block { kernel, points, constants, steps } = self;
-        let begin = *steps;
-        *steps += n;
+        let range = self.steps..self.steps + n;
         match instructions {
-            Instructions::Widest => kernel::widest(kernel, points, constants, begin..*steps),
-            Instructions::Avx2 => kernel::avx2(kernel, points, constants, begin..*steps),
-            Instructions::Baseline => kernel::steps(kernel, points, constants, begin..*steps),
+            Instructions::Widest => kernel::widest(self, range),
+            Instructions::Avx2 => kernel::avx2(self, range),
+            Instructions::Baseline => kernel::baseline(self, range),
         }
+        self.steps += n;
     }
 }
