@@ -101,8 +101,8 @@ fn add(
         let seen = Seen::new(tests, stretch.times[i]);
         for p in 0..3 {
             let own = &mut sums[p][seen.first..seen.first + LANES];
-            for k in 0..LANES {
-                own[k] += seen.value[k] * value[p];
+            for (sum, by) in own.iter_mut().zip(&seen.value) {
+                *sum += by * value[p];
             }
         }
     }
