@@ -1,5 +1,7 @@
 //! From rows to segments: rows of one time are merged, repeated readings and flat tops left out, and gaps split.
 
+use core::ops::Range;
+
 use nalgebra::Vector3;
 
 use super::error::RecordError;
@@ -36,55 +38,34 @@ pub(super) struct Cleaned {
 
 /// The segments that `rows` hold.
 pub(super) fn cleaned(file: &str, rows: RawRows) -> Result<Cleaned, RecordError> {
-    let RawRows { rows, names, columns, rate_unit, .. } = rows;
-    let mut segments: Vec<Segment> = Vec::new();
     let mut findings = Vec::new();
-    let mut merged: Vec<([f64; 4], f64, usize)> = Vec::with_capacity(rows.len());
-    for (line, row) in rows {
-        if let Some(k) = row.iter().position(|v| !v.is_finite()) {
-            return Err(RecordError::Value {
-                file: file.into(),
-                line,
-                column: columns[k],
-                name: names[k].clone(),
-                value: row[k].to_string(),
-            });
-        }
-        match merged.last_mut() {
-            Some((last, ..)) if row[0] < last[0] => {
-                return Err(RecordError::Order { file: file.into(), line, time: row[0], before: last[0] });
-            }
-            Some((last, count, _)) if row[0] == last[0] => {
-                *count += 1.0;
-                for k in 1..4 {
-                    let change = row[k] - last[k];
-                    // the difference of two large numbers may overflow where their mean does not
-                    let finite = change.is_finite();
-                    last[k] += if finite { change / *count } else { row[k] / *count - last[k] / *count };
-                }
-                findings.push((row[0], Finding::Merged));
-            }
-            _ => merged.push((row, 1.0, line)),
-        }
-    }
-    if merged.is_empty() {
+    let rate_unit = rows.rate_unit;
+    let mut samples = merged(file, rows, &mut findings)?;
+    if samples.is_empty() {
         return Err(RecordError::Empty { file: file.into(), window: None, span: (0.0, 0.0) });
     }
-    let all: Vec<[f64; 4]> = merged.iter().map(|(row, ..)| *row).collect();
-    let Repeats { samples: repeated, evenly } = repeats(&all);
-    let new = |i: &usize| !repeated[*i];
-    let lines: Vec<usize> = (0..all.len()).filter(new).map(|i| merged[i].2).collect();
-    let samples: Vec<[f64; 4]> = (0..all.len()).filter(new).map(|i| all[i]).collect();
+    let Repeats { samples: repeated, evenly } = repeats(&samples);
+    let again = samples.iter().zip(&repeated).filter(|(_, repeated)| **repeated);
+    let again: Vec<f64> = again.map(|((_, row), _)| row[0]).collect();
+    let mut is_repeated = repeated.iter();
+    samples.retain(|_| is_repeated.next() != Some(&true));
     let flat = flat_tops(&samples);
-    let mut intervals: Vec<f64> = samples.windows(2).map(|w| w[1][0] - w[0][0]).collect();
-    intervals.sort_by(f64::total_cmp);
-    let median = intervals.get(intervals.len() / 2).copied().unwrap_or(0.0);
-    let repeated = all.iter().zip(&repeated).filter(|(_, repeated)| **repeated);
-    let interval = mean(intervals.iter().copied().take_while(|interval| *interval <= GAP * median));
-    let finding = if evenly { Finding::Repeated { interval } } else { Finding::Stale };
-    findings.extend(repeated.map(|(row, _)| (row[0], finding)));
+    let mut intervals: Vec<f64> = samples.windows(2).map(|w| w[1].1[0] - w[0].1[0]).collect();
+    let half = intervals.len() / 2;
+    let median = match intervals.is_empty() {
+        true => 0.0,
+        false => *intervals.select_nth_unstable_by(half, f64::total_cmp).1,
+    };
+    let finding = if evenly {
+        intervals.sort_by(f64::total_cmp);
+        Finding::Repeated { interval: mean(intervals.into_iter().take_while(|i| *i <= GAP * median)) }
+    } else {
+        Finding::Stale
+    };
+    findings.extend(again.into_iter().map(|time| (time, finding)));
+    let mut ranges: Vec<Range<usize>> = Vec::new();
     let mut last: Option<f64> = None;
-    for ((row, flat), line) in samples.iter().zip(flat).zip(lines) {
+    for (i, (&(_, row), flat)) in samples.iter().zip(flat).enumerate() {
         if flat {
             findings.push((row[0], Finding::Saturated));
             last = None;
@@ -94,24 +75,67 @@ pub(super) fn cleaned(file: &str, rows: RawRows) -> Result<Cleaned, RecordError>
         if gap {
             findings.push((row[0], Finding::Gap));
         }
-        if gap || last.is_none() {
-            segments.push(Segment {
-                source: file.into(),
-                times: Vec::new(),
-                rates: Vec::new(),
-                lines: Vec::new(),
-                inputs: None,
-                rate_unit,
-            });
-        }
-        if let Some(segment) = segments.last_mut() {
-            segment.times.push(row[0]);
-            segment.lines.push(line);
-            segment.rates.push(Vector3::new(row[1], row[2], row[3]));
+        match ranges.last_mut().filter(|_| last.is_some() && !gap) {
+            Some(range) => range.end = i + 1,
+            None => ranges.push(i..i + 1),
         }
         last = Some(row[0]);
     }
-    Ok(Cleaned { segments, findings })
+    let segments = ranges.into_iter().map(|range| {
+        let own = &samples[range];
+        Segment {
+            source: file.into(),
+            times: own.iter().map(|(_, row)| row[0]).collect(),
+            rates: own.iter().map(|(_, row)| Vector3::new(row[1], row[2], row[3])).collect(),
+            lines: own.iter().map(|(line, _)| *line).collect(),
+            inputs: None,
+            rate_unit,
+        }
+    });
+    Ok(Cleaned { segments: segments.collect(), findings })
+}
+
+/// The rows, those of one time as their mean.
+fn merged(
+    file: &str,
+    rows: RawRows,
+    findings: &mut Vec<(f64, Finding)>,
+) -> Result<Vec<(usize, [f64; 4])>, RecordError> {
+    let RawRows { mut rows, names, columns, .. } = rows;
+    let (mut kept, mut count) = (0, 1.0);
+    for i in 0..rows.len() {
+        let (line, row) = rows[i];
+        if let Some(k) = row.iter().position(|v| !v.is_finite()) {
+            return Err(RecordError::Value {
+                file: file.into(),
+                line,
+                column: columns[k],
+                name: names[k].clone(),
+                value: row[k].to_string(),
+            });
+        }
+        match rows[..kept].last_mut() {
+            Some((_, last)) if row[0] < last[0] => {
+                return Err(RecordError::Order { file: file.into(), line, time: row[0], before: last[0] });
+            }
+            Some((_, last)) if row[0] == last[0] => {
+                count += 1.0;
+                for k in 1..4 {
+                    let change = row[k] - last[k];
+                    // the difference of two large numbers may overflow where their mean does not
+                    let finite = change.is_finite();
+                    last[k] += if finite { change / count } else { row[k] / count - last[k] / count };
+                }
+                findings.push((row[0], Finding::Merged));
+            }
+            _ => {
+                rows[kept] = (line, row);
+                (kept, count) = (kept + 1, 1.0);
+            }
+        }
+    }
+    rows.truncate(kept);
+    Ok(rows)
 }
 
 fn mean(values: impl Iterator<Item = f64>) -> f64 {
@@ -123,23 +147,23 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
 ///
 /// Rounded readings are flat at a peak too, for as long as they take to fall by a few steps of the rounding; a clipped
 /// peak is flat for longer.
-fn flat_tops(samples: &[[f64; 4]]) -> Vec<bool> {
+fn flat_tops(samples: &[(usize, [f64; 4])]) -> Vec<bool> {
     let mut flat = vec![false; samples.len()];
     for k in 1..4 {
-        let column = || samples.iter().map(|row| row[k]);
+        let column = || samples.iter().map(|(_, row)| row[k]);
         let (low, high) =
             (column().fold(f64::INFINITY, f64::min), column().fold(f64::NEG_INFINITY, f64::max));
-        let steps = samples.windows(2).map(|w| (w[1][k] - w[0][k]).abs()).filter(|step| *step > 0.0);
+        let steps = samples.windows(2).map(|w| (w[1].1[k] - w[0].1[k]).abs()).filter(|step| *step > 0.0);
         let step = steps.fold(f64::INFINITY, f64::min);
         // a column of a few values, or of one, is a quiet axis
         if high - low < QUIET * step {
             continue;
         }
         for end in [low, high] {
-            let away = |row: &[f64; 4]| (row[k] - end).abs() >= 2.5 * step;
+            let away = |(_, row): &(usize, [f64; 4])| (row[k] - end).abs() >= 2.5 * step;
             let mut i = 0;
             while i < samples.len() {
-                let run = samples[i..].iter().take_while(|row| row[k] == end).count();
+                let run = samples[i..].iter().take_while(|(_, row)| row[k] == end).count();
                 if run >= FLAT_TOP {
                     // look at most a third of the run aside; beyond the ends of the record there is no evidence
                     let most = run / 3;

@@ -25,17 +25,17 @@ pub(super) struct Repeats {
     pub(super) evenly: bool,
 }
 
-/// Which of the `samples`, times and rates, repeat the reading before, where rounding does not explain it.
-pub(super) fn repeats(samples: &[[f64; 4]]) -> Repeats {
+/// Which of the `samples`, lines with times and rates, repeat the reading before, where rounding does not explain it.
+pub(super) fn repeats(samples: &[(usize, [f64; 4])]) -> Repeats {
     let none = || Repeats { samples: vec![false; samples.len()], evenly: false };
     let repeats: Vec<bool> =
-        (0..samples.len()).map(|i| i > 0 && samples[i][1..] == samples[i - 1][1..]).collect();
+        (0..samples.len()).map(|i| i > 0 && samples[i].1[1..] == samples[i - 1].1[1..]).collect();
     // the first and the last reading may be cut off
     let begins: Vec<usize> = (1..samples.len()).filter(|i| !repeats[*i]).collect();
     if begins.len() <= READINGS {
         return none();
     }
-    let change = |i: usize, k: usize| (samples[i][k] - samples[i - 1][k]).abs();
+    let change = |i: usize, k: usize| (samples[i].1[k] - samples[i - 1].1[k]).abs();
     let step = |k: usize| {
         let changes = begins.iter().map(|i| change(*i, k)).filter(|change| *change > 0.0);
         changes.fold(f64::INFINITY, f64::min)
@@ -57,12 +57,12 @@ pub(super) fn repeats(samples: &[[f64; 4]]) -> Repeats {
     let equal: f64 = apart.into_iter().filter(|apart| *apart > 1.0).map(f64::recip).product();
     let mut stale = none();
     let ends = [1, 2, 3].map(|k| {
-        let column = || samples.iter().map(|row| row[k]);
+        let column = || samples.iter().map(|(_, row)| row[k]);
         (k, column().fold(f64::INFINITY, f64::min), column().fold(f64::NEG_INFINITY, f64::max))
     });
     // at the end of its range a sensor repeats itself too
     let is_inside = |i: usize| {
-        ends.iter().all(|(k, low, high)| *low < samples[i][*k] && samples[i][*k] < *high || low == high)
+        ends.iter().all(|(k, low, high)| *low < samples[i].1[*k] && samples[i].1[*k] < *high || low == high)
     };
     let stands_out = |i: usize| steps.iter().any(|(k, step)| change(i, *k) / step >= APART);
     for pair in begins.windows(2) {

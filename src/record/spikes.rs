@@ -3,6 +3,8 @@
 //! Source: Hampel 1974, Journal of the American Statistical Association 69, 383, with predictions in place of the median,
 //! since rates of a tumbling body have slopes.
 
+use std::collections::BTreeMap;
+
 use nalgebra::Vector3;
 
 /// A sample that was left out because it stands out of its neighbours.
@@ -58,14 +60,76 @@ const EVERY: f64 = 2.0;
 /// A sample counts as one only if neither side foresees it: those beside a jump have a side without it. What is found is no
 /// neighbour of the others any more.
 pub(super) fn spikes(rates: &[Vector3<f64>]) -> Vec<usize> {
-    let mut left = vec![true; rates.len()];
-    let of_sets: Vec<Deviations> = (0..rates.len()).map(|i| deviations(rates, &left, i)).collect();
-    let usual: Deviations = core::array::from_fn(|k| {
-        let mut all: Vec<f64> = of_sets.iter().map(|d| d[k]).filter(|d| d.is_finite()).collect();
-        median(&mut all).unwrap_or(0.0)
+    let mut scores = Scores::new(rates);
+    // where the motion is too fast for the sampling, all samples deviate
+    let stands_out = |scores: &Scores, i: usize| {
+        let own = scores.at(i);
+        if !own.is_far() {
+            return false;
+        }
+        let around = i.saturating_sub(NEIGHBOURS)..(i + NEIGHBOURS + 1).min(rates.len());
+        let mut near: Vec<f64> = around.map(|k| scores.at(k).middle).collect();
+        median(&mut near).is_some_and(|near| own.middle > FAR * near)
+    };
+    let mut suspects: Vec<usize> = (0..rates.len()).filter(|&i| stands_out(&scores, i)).collect();
+    let mut left = vec![true; if suspects.is_empty() { 0 } else { rates.len() }];
+    let mut found = Vec::new();
+    let around = |i: usize, reach: usize| i.saturating_sub(reach)..(i + reach + 1).min(rates.len());
+    while let Some(worst) = (0..suspects.len())
+        .max_by(|&a, &b| scores.at(suspects[a]).first.total_cmp(&scores.at(suspects[b]).first))
+    {
+        let spike = suspects.swap_remove(worst);
+        found.push(spike);
+        left[spike] = false;
+        for i in around(spike, SPAN).filter(|&i| left[i]) {
+            scores.changed.insert(i, scores.among(&left, i));
+        }
+        // without the spike among their neighbours others may stand out, or no longer do
+        suspects.retain(|&i| i.abs_diff(spike) > NEIGHBOURS);
+        suspects.extend(around(spike, NEIGHBOURS).filter(|&i| left[i] && stands_out(&scores, i)));
+    }
+    // a sample between two spikes may have looked worse than they do
+    found.retain(|&i| {
+        let keep = scores.among(&left, i).is_far();
+        left[i] = !keep;
+        keep
     });
-    let score = |of_sets: &Deviations| {
-        let relative = |k: usize| Some(of_sets[k] / usual[k]).filter(|s| s.is_finite());
+    found.sort_unstable();
+    found
+}
+
+/// The scores of all samples. They are computed when they are asked for: of a long record there are few that matter.
+struct Scores<'a> {
+    rates: &'a [Vector3<f64>],
+    all: Vec<bool>,
+    /// The median deviation of each set.
+    usual: Deviations,
+    /// Those that samples left out have changed.
+    changed: BTreeMap<usize, Score>,
+}
+
+impl<'a> Scores<'a> {
+    fn new(rates: &'a [Vector3<f64>]) -> Self {
+        let all = vec![true; rates.len()];
+        let mut of_set: Vec<f64> = Vec::with_capacity(rates.len());
+        let usual = core::array::from_fn(|set| {
+            of_set.clear();
+            let each = (0..rates.len()).map(|i| deviations(rates, &all, i, [set])[0]);
+            of_set.extend(each.filter(|deviation| deviation.is_finite()));
+            median(&mut of_set).unwrap_or(0.0)
+        });
+        Scores { rates, all, usual, changed: BTreeMap::new() }
+    }
+
+    /// The score of a sample so far.
+    fn at(&self, i: usize) -> Score {
+        self.changed.get(&i).copied().unwrap_or_else(|| self.among(&self.all, i))
+    }
+
+    /// The same among those that are `left`.
+    fn among(&self, left: &[bool], i: usize) -> Score {
+        let of_sets: Deviations = deviations(self.rates, left, i, core::array::from_fn(|set| set));
+        let relative = |k: usize| Some(of_sets[k] / self.usual[k]).filter(|s| s.is_finite());
         let sides = SIDES.map(|sets| sets.into_iter().filter_map(relative).reduce(f64::max));
         let (mut each, mut count) = ([0.0; 5], 0);
         for score in (0..3).map(relative).chain(sides).flatten() {
@@ -76,42 +140,7 @@ pub(super) fn spikes(rates: &[Vector3<f64>]) -> Vec<usize> {
         let first = each.first().copied().unwrap_or(0.0);
         let least = sides.into_iter().flatten().fold(f64::INFINITY, f64::min);
         Score { first, least, middle: median(each).unwrap_or(0.0) }
-    };
-    let mut scores: Vec<Score> = of_sets.iter().map(score).collect();
-    // where the motion is too fast for the sampling, all samples deviate
-    let stands_out = |scores: &[Score], i: usize| {
-        let own = scores[i];
-        if !own.is_far() {
-            return false;
-        }
-        let around = &scores[i.saturating_sub(NEIGHBOURS)..(i + NEIGHBOURS + 1).min(scores.len())];
-        let mut near: Vec<f64> = around.iter().map(|s| s.middle).collect();
-        median(&mut near).is_some_and(|near| own.middle > FAR * near)
-    };
-    let mut suspects: Vec<usize> = (0..rates.len()).filter(|&i| stands_out(&scores, i)).collect();
-    let mut found = Vec::new();
-    let around = |i: usize, reach: usize| i.saturating_sub(reach)..(i + reach + 1).min(rates.len());
-    while let Some(worst) =
-        (0..suspects.len()).max_by(|&a, &b| scores[suspects[a]].first.total_cmp(&scores[suspects[b]].first))
-    {
-        let spike = suspects.swap_remove(worst);
-        found.push(spike);
-        left[spike] = false;
-        for i in around(spike, SPAN).filter(|&i| left[i]) {
-            scores[i] = score(&deviations(rates, &left, i));
-        }
-        // without the spike among their neighbours others may stand out, or no longer do
-        suspects.retain(|&i| i.abs_diff(spike) > NEIGHBOURS);
-        suspects.extend(around(spike, NEIGHBOURS).filter(|&i| left[i] && stands_out(&scores, i)));
     }
-    // a sample between two spikes may have looked worse than they do
-    found.retain(|&i| {
-        let keep = score(&deviations(rates, &left, i)).is_far();
-        left[i] = !keep;
-        keep
-    });
-    found.sort_unstable();
-    found
 }
 
 /// How far neither side foresees a sample, in usual deviations, and the median of all predictions.
@@ -131,12 +160,12 @@ impl Score {
 
 type Deviations = [f64; SETS.len()];
 
-/// The deviation of a sample from each of its predictions, in units of their noise; infinite where neighbours are missing.
-fn deviations(rates: &[Vector3<f64>], left: &[bool], i: usize) -> Deviations {
+/// The deviation of a sample from its prediction by each of some sets, in units of their noise; infinite where neighbours are missing.
+fn deviations<const N: usize>(rates: &[Vector3<f64>], left: &[bool], i: usize, sets: [usize; N]) -> [f64; N] {
     // the usual case, whose weights are constants
     let span = i.wrapping_sub(FARTHEST)..=i + FARTHEST;
     if i >= FARTHEST && left.get(span).is_some_and(|span| span.iter().all(|left| *left)) {
-        return core::array::from_fn(|set| {
+        return sets.map(|set| {
             let (mut rest, mut noise) = (rates[i], 1.0);
             for (node, weight) in SETS[set].iter().zip(WEIGHTS[set]).filter(|(node, _)| **node != 0) {
                 rest -= rates[i.wrapping_add_signed(*node)] * weight;
@@ -150,10 +179,10 @@ fn deviations(rates: &[Vector3<f64>], left: &[bool], i: usize) -> Deviations {
     let (mut low, mut high) = ([None; FARTHEST], [None; FARTHEST]);
     before.zip(&mut low).for_each(|(k, slot)| *slot = Some(k));
     after.zip(&mut high).for_each(|(k, slot)| *slot = Some(k));
-    SETS.map(|set| {
+    sets.map(|set| {
         let mut nodes = [0; 4];
         let mut count = 0;
-        for (slot, &place) in nodes.iter_mut().zip(set.iter().filter(|place| **place != 0)) {
+        for (slot, &place) in nodes.iter_mut().zip(SETS[set].iter().filter(|place| **place != 0)) {
             let side = if place < 0 { &low } else { &high };
             let Some(node) = side[place.unsigned_abs() - 1] else { return f64::INFINITY };
             *slot = node;

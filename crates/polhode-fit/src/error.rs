@@ -85,6 +85,22 @@ pub enum FitError {
         /// Moments, shares of the trace, of the body that explains the record if its axes are left-handed.
         mirror: Option<Box<[f64; 3]>>,
     },
+    /// Errors of the sensor that were to be fitted leave the tensor open, which the record tells without them.
+    #[error(
+        "the record cannot tell the errors of the sensor that are to be fitted from the tensor: without them the fit has an answer; \
+         let them have smaller deviations, fit fewer of them, or record longer"
+    )]
+    UntoldSensor,
+    /// Momenta of wheels or torques of the record contradict its rates.
+    #[error(
+        "the momenta of wheels and the torques of the record contradict its rates: the best body with them leaves {} of the \
+         squared derivative of the rates unexplained; look at their axes, signs and units, and at whether something else drives the body",
+        per_cent(*unexplained)
+    )]
+    Contradicted {
+        /// Share of the squared derivative of the rates.
+        unexplained: f64,
+    },
     /// Torques drive the body: its motion is not that of a free one.
     #[error(
         "the body is driven, and no tensor can be told: {}; throw the body, cut out of the record what is free, or \

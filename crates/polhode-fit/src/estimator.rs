@@ -21,7 +21,7 @@ use crate::physical::coordinates::Form;
 use crate::physical::failure::SolverFailure;
 use crate::physical::nearest::nearest;
 use crate::report::differing::differing;
-use crate::report::estimate::Estimate;
+use crate::report::estimate::{Estimate, Method};
 use crate::report::facts::Facts;
 use crate::report::mirror::reversed;
 use crate::report::nuisance::Agreement;
@@ -29,6 +29,7 @@ use crate::report::parts::scatter;
 use crate::report::segments::summaries;
 use crate::report::systematic::errors;
 use crate::settings::Settings;
+use crate::settings::sensor::SensorPriors;
 use crate::settings::torque::{TorqueModel, TorqueNoise};
 use crate::signal::noise;
 use crate::signal::normalised::{Normalised, normalised};
@@ -42,7 +43,7 @@ use crate::sparse::{is_sparse, likeliest};
 use crate::thresholds::test_functions::SAMPLES_PER_TEST;
 use crate::thresholds::warnings::UNCERTAIN;
 use crate::units::Motion;
-use crate::verdict::driven::check_driven;
+use crate::verdict::driven::{check_driven, check_inputs};
 use crate::verdict::units::open_units;
 
 /// Fits one tensor to all segments of a record.
@@ -104,15 +105,25 @@ pub(crate) struct Drawn {
 /// The estimate of a record with the equations behind it.
 pub(crate) fn fitted(record: &Record, settings: &Settings) -> Result<Fitted, FitError> {
     settings.check()?;
-    let fitted =
-        |record: &Record| match if settings.leave_out_spikes { record.without_spikes() } else { None } {
-            Some((spikes, rest)) => fit_to(&rest, settings, spikes),
-            None => fit_to(record, settings, Vec::new()),
-        };
-    fitted(record).map_err(|mut error| {
+    let fitted = |record: &Record, settings: &Settings| match if settings.leave_out_spikes {
+        record.without_spikes()
+    } else {
+        None
+    } {
+        Some((spikes, rest)) => fit_to(&rest, settings, spikes),
+        None => fit_to(record, settings, Vec::new()),
+    };
+    fitted(record, settings).map_err(|mut error| {
+        let exact = SensorPriors::default();
+        if matches!(error, FitError::Unsettled { .. })
+            && settings.sensor != exact
+            && fitted(record, &settings.clone().with_sensor(exact)).is_ok()
+        {
+            return FitError::UntoldSensor;
+        }
         if let FitError::Unsettled { mirror, .. } | FitError::PriorContradicted { mirror, .. } = &mut error {
-            *mirror =
-                reversed(record).and_then(|other| Some(Box::new(fitted(&other).ok()?.estimate.principal)));
+            *mirror = reversed(record)
+                .and_then(|other| Some(Box::new(fitted(&other, settings).ok()?.estimate.principal)));
         }
         error
     })
@@ -232,6 +243,10 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
     };
     let estimate = facts.report(answer, identifiability, motion.as_ref(), open.as_ref())?;
     check_driven(&estimate, motion.as_ref(), &stretches, rms)?;
+    // a likelihood on the exact motion leaves no more than noise
+    if input.is_some() && estimate.method == Method::WeakForm {
+        check_inputs(&chosen.weak, &stretches, variance)?;
+    }
     let drawn = Drawn { weak: chosen.weak, deviation, spread, rms, input };
     Ok(Fitted { estimate, drawn: Some(drawn) })
 }

@@ -169,8 +169,8 @@ thresholds! {
         FAR: f64 = 6.0,
             "standard deviations by which noise alone does not carry five numbers off the physical tensors", "limits_that_contradict_the_record_are_seen_in_the_misfit";
         RESIDUALS: f64 = 1.2, "misfit that is worth a warning", UNMEASURED;
-        HALVES: f64 = 35.888_186_879_672_87,
-            "chi squared of 5 degrees of freedom with a chance of 1e-6: two parts of a record contradict each other", DERIVED;
+        HALVES: f64 = 25.744_831_959_040_53,
+            "chi squared of 5 degrees of freedom with a chance of 1e-4: two parts of a record contradict each other", DERIVED;
         CUTS: usize = 8, "parts of a record at whose borders it is cut in two", UNMEASURED;
         OPEN: f64 = 1e-12,
             "singular value over the largest, below which it is rounding and a part of the record leaves the number open", DERIVED;
@@ -188,6 +188,9 @@ thresholds! {
             "share of the squared derivative of the rates from which torques at random are worth a warning", UNMEASURED;
         SENSOR: f64 = 30.0,
             "gain of log-likelihood from which errors of the sensor are named: at most 15 in measured tosses, at least 62 in 40 records of a sensor misaligned by 0.02", "misaligned_and_unequal_axes_are_named_where_torque_noise_takes_their_place";
+        LEFT_OUT: f64 = 3.719_016_485_455_709,
+            "standard normal deviate with a chance of 1e-4: without torque noise, the gain of log-likelihood by what the fit takes to be zero", DERIVED;
+        NEGATIVE: f64 = 3.0, "deviations below zero of a size of the tensor from which on it is no noise", UNMEASURED;
         FEW: usize = 20, "degrees of freedom below which chi squared is no check", UNMEASURED;
     }
     trend: "trends of what a free body keeps, and whiteness" {
@@ -216,6 +219,7 @@ thresholds! {
         HELD: f64 = 1e-6, "deviation of scale and alignment while the tensor is that of a sphere", UNMEASURED;
         DELAY: f64 = 1e-3, "delay of an axis, s", UNMEASURED;
         WHEEL: f64 = 1e-3, "momentum of a wheel over that of the body", UNMEASURED;
+        MAGNET: f64 = 1e-3, "torque of a magnet in the body over the trace, rad/s^2", UNMEASURED;
         WALK: f64 = 1e-4, "random walk of the offsets, rad/s per root of a second", UNMEASURED;
         WALK_STEPS: usize = 6, "steps of that walk in each segment: the slow ones matter", UNMEASURED;
         MOST: usize = 60, "columns of a walk beyond which it is not asked for", UNMEASURED;

@@ -14,6 +14,9 @@ pub(super) fn reason(error: &FitError) -> String {
             format!("{error} (--attitude body-to-space or space-to-body)")
         }
         FitError::Poses(PoseFault::NotFree { .. }) => format!("{error} (--window t0,t1)"),
+        FitError::UntoldSensor => format!(
+            "{error} (smaller --gyro-bias, --gyro-scale, --gyro-axis-scales, --gyro-misalignment or --gyro-skew)"
+        ),
         FitError::Undersampled { .. } => format!("{error} (--rate-unit, --time-unit)"),
         _ => error.to_string(),
     }
@@ -28,6 +31,7 @@ pub(super) fn facts(error: &FitError) -> (Option<Facts>, bool) {
         FitError::Driven { .. } => (Some(Facts::driven()), true),
         FitError::Poses(PoseFault::Direction { .. }) => (Some(Facts::direction_open()), true),
         FitError::Poses(PoseFault::NotFree { .. }) => (Some(Facts::driven()), true),
+        FitError::Contradicted { .. } => (Some(Facts::contradicted()), true),
         FitError::NoRotation { .. }
         | FitError::Solver(_)
         | FitError::Poses(PoseFault::NoTurn { .. } | PoseFault::HalfTurn { .. }) => (None, true),

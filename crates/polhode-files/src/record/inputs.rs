@@ -64,7 +64,7 @@ impl Inputs {
 
     /// Reads those of the present row.
     pub(super) fn push(&mut self, table: &Table) -> Result<(), TableError> {
-        if self.momenta.is_none() && self.torques.is_none() && self.speed.is_none() {
+        if !self.are_given() {
             return Ok(());
         }
         let vector = |places: Option<[usize; 3]>| match places {
@@ -83,6 +83,11 @@ impl Inputs {
     pub(super) fn reads(&self, place: usize, letters: &str) -> bool {
         [self.momenta, self.torques].iter().flatten().any(|places| places.contains(&place))
             || letters.starts_with("wheel")
+    }
+
+    /// Whether there are such columns.
+    pub(super) fn are_given(&self) -> bool {
+        self.momenta.is_some() || self.torques.is_some() || self.speed.is_some()
     }
 
     /// The record with them; `lines` are those of the rows.

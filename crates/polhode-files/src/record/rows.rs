@@ -106,11 +106,15 @@ impl<'t> Rows<'t> {
         };
         let unused = others.map(|(place, name)| called((place, name.text.as_str()))).collect();
         let names = columns.map(|column| header.names[column].text.clone());
-        let lines: Vec<usize> = rows.iter().map(|(line, _)| *line).collect();
+        let of_rows = || rows.iter().map(|(line, _)| *line).collect::<Vec<usize>>();
+        let lines = self.inputs.are_given().then(of_rows);
         let (columns, rate_unit) = (columns.map(|column| column + 1), self.rate_unit());
         let rows = RawRows { rows, names, columns, rate_unit, unused };
         let record = Record::cleaned(table.name(), rows).map_err(|error| self.refused(error))?;
-        self.inputs.complete(record, &lines).map_err(|error| self.refused(error))
+        match lines {
+            Some(lines) => self.inputs.complete(record, &lines).map_err(|error| self.refused(error)),
+            None => Ok(record),
+        }
     }
 
     /// A refusal of the library, in the words of tables.

@@ -2,35 +2,43 @@
 
 use crate::thresholds::bound::{CHANGE, DAMPING, LEFT, STARTS, STEPS, STILL, SURE, WIDTH};
 use core::ops::Range;
+use std::borrow::Cow;
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 use crate::bound::sensitivity::{Euler, Sensitivity, Start};
+use crate::signal::both::both;
 use crate::signal::stretch::Stretch;
+use crate::thresholds::radius::LONG;
 
-/// Means of neighbouring samples.
-struct Means {
-    times: Vec<f64>,
-    rates: Vec<Vector3<f64>>,
+/// Samples, or means of neighbouring ones.
+struct Means<'a> {
+    times: Cow<'a, [f64]>,
+    rates: Cow<'a, [Vector3<f64>]>,
+    /// How many each is of; of single samples there are none.
     counts: Vec<f64>,
 }
 
-impl Means {
-    /// Over at most `width`; of zero width, the samples themselves.
-    fn new(s: &Stretch, width: f64) -> Means {
-        let mut means = Means { times: Vec::new(), rates: Vec::new(), counts: Vec::new() };
+impl<'a> Means<'a> {
+    fn of_one(s: &'a Stretch) -> Self {
+        Means { times: s.times.as_slice().into(), rates: s.rates.as_slice().into(), counts: Vec::new() }
+    }
+
+    /// Over at most `width`.
+    fn new(s: &Stretch, width: f64) -> Self {
+        let (mut times, mut rates, mut counts) = (Vec::new(), Vec::new(), Vec::new());
         let mut low = 0;
         while low < s.times.len() {
             let high = s.times.partition_point(|&t| t <= s.times[low] + width).max(low + 1);
             let count = (high - low) as f64;
             // about the first, so that one sample stays as it is
             let first = s.times[low];
-            means.times.push(first + s.times[low..high].iter().map(|t| t - first).sum::<f64>() / count);
-            means.rates.push(s.rates[low..high].iter().sum::<Vector3<f64>>() / count);
-            means.counts.push(count);
+            times.push(first + s.times[low..high].iter().map(|t| t - first).sum::<f64>() / count);
+            rates.push(s.rates[low..high].iter().sum::<Vector3<f64>>() / count);
+            counts.push(count);
             low = high;
         }
-        means
+        Means { times: times.into(), rates: rates.into(), counts }
     }
 
     /// Those at most `radius` from `time`.
@@ -48,11 +56,27 @@ struct Distance {
 }
 
 impl Distance {
-    fn new(euler: &Euler, means: &Means, range: Range<usize>, start: &Start) -> Distance {
+    fn new(euler: &Euler, means: &Means<'_>, range: Range<usize>, start: &Start) -> Distance {
+        if range.len() <= LONG {
+            return Distance::one_by_one(euler, means, range, start);
+        }
+        // what comes before and after the start side by side, whatever the machine is
+        let split = range.start + means.times[range.clone()].partition_point(|t| *t < start.time);
+        let of = |own: Range<usize>| Distance::one_by_one(euler, means, own, start);
+        let (after, before) = both(true, || of(split..range.end), || of(range.start..split));
+        Distance {
+            information: after.information + before.information,
+            gradient: after.gradient + before.gradient,
+            sum: after.sum + before.sum,
+        }
+    }
+
+    fn one_by_one(euler: &Euler, means: &Means<'_>, range: Range<usize>, start: &Start) -> Distance {
         let mut distance = Distance { information: Matrix3::zeros(), gradient: Vector3::zeros(), sum: 0.0 };
         let low = range.start;
         euler.sweep(&means.times[range], start, |i, w, s: &Sensitivity<3>| {
-            let (count, residual) = (means.counts[low + i], means.rates[low + i] - w);
+            let count = means.counts.get(low + i).copied().unwrap_or(1.0);
+            let residual = means.rates[low + i] - w;
             distance.information += s.transpose() * s * count;
             distance.gradient += s.transpose() * residual * count;
             distance.sum += residual.norm_squared() * count;
@@ -64,7 +88,7 @@ impl Distance {
 /// The start of the motion nearest to the samples of a window by Levenberg's damped steps, the tensor held.
 fn descend(
     euler: &Euler,
-    means: &Means,
+    means: &Means<'_>,
     range: Range<usize>,
     mut start: Start,
     variance: f64,
@@ -96,7 +120,7 @@ fn descend(
 /// A window within which the motion turns by little has one, and what it leaves uncertain of the motion in a window
 /// twice as long is small against a turn: each window starts where the one before has ended.
 pub(super) fn nearest_motion(euler: &Euler, s: &Stretch, variance: f64) -> Option<(Start, f64)> {
-    let samples = Means::new(s, 0.0);
+    let samples = Means::of_one(s);
     let coarse = Means::new(s, WIDTH);
     let mean = s.rates.iter().sum::<Vector3<f64>>() / s.rates.len() as f64;
     let variation: f64 = s.rates.iter().map(|w| (w - mean).norm_squared()).sum();

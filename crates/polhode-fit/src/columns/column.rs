@@ -5,6 +5,7 @@ use crate::columns::constant::Constant;
 use crate::columns::drag::Drag;
 use crate::columns::effect::{Class, Effect, Label};
 use crate::columns::input::Input;
+use crate::columns::magnet::Magnet;
 use crate::columns::misalignment::Misalignment;
 use crate::columns::offset::Offset;
 use crate::columns::quadratic::Quadratic;
@@ -42,7 +43,21 @@ macro_rules! kinds {
     };
 }
 
-kinds!(Drag, Viscous, Quadratic, Constant, Offset, Scale, AxisScale, Misalignment, Skew, Walk, Rotor, Input);
+kinds!(
+    Drag,
+    Viscous,
+    Quadratic,
+    Constant,
+    Offset,
+    Scale,
+    AxisScale,
+    Misalignment,
+    Skew,
+    Walk,
+    Rotor,
+    Magnet,
+    Input
+);
 
 /// An unknown and the standard deviation of its prior about zero.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -94,6 +94,12 @@ pub(crate) trait Effect {
         None
     }
 
+    /// The derivative of the torque with respect to it, where that depends on how the body has turned: `to_body` takes coordinates along the axes that
+    /// the body had at the first sample of the stretch to those along its present ones.
+    fn torque_at(&self, _to_body: &Matrix3<f64>) -> Option<Vector3<f64>> {
+        None
+    }
+
     /// The derivative of P, where it is an error of scale or alignment: that of ω = P y.
     fn distortion(&self) -> Option<Matrix3<f64>> {
         None

@@ -12,6 +12,7 @@ pub(crate) mod drag;
 pub(crate) mod effect;
 pub(crate) mod equation;
 pub(crate) mod input;
+pub(crate) mod magnet;
 pub(crate) mod misalignment;
 pub(crate) mod offset;
 pub(crate) mod quadratic;

@@ -4,6 +4,7 @@ use crate::columns::axis_scale::AxisScale;
 use crate::columns::column::Column;
 use crate::columns::constant::Constant;
 use crate::columns::drag::Drag;
+use crate::columns::magnet::Magnet;
 use crate::columns::misalignment::Misalignment;
 use crate::columns::offset::Offset;
 use crate::columns::quadratic::Quadratic;
@@ -75,6 +76,16 @@ pub(crate) fn walk_columns(stretches: &[Stretch], walk: f64, most: usize) -> Vec
         }
     }
     columns
+}
+
+/// The columns of a magnet in the body; how the axes of a stretch stand in the field at its first sample is not known.
+pub(crate) fn magnet_columns(stretches: &[Stretch]) -> Vec<Column> {
+    let of = |stretch: &Stretch| {
+        let segment = stretch.index;
+        let each = (0..9).map(move |k| Magnet { magnet: k / 3, field: k % 3, segment });
+        each.map(move |magnet| Column::new(magnet, None).of_segment(segment))
+    };
+    stretches.iter().flat_map(of).collect()
 }
 
 #[cfg(test)]

@@ -1,13 +1,17 @@
 //! Sums for drag that grows with the square of the rate: those of |ω| ω against the test functions.
 
-use crate::signal::terms::slope;
+use core::ops::Range;
+
+use multiversion::multiversion;
 use nalgebra::Vector3;
 
 use crate::columns::column::Column;
 use crate::columns::quadratic::Quadratic;
+use crate::signal::both::both;
 use crate::signal::stretch::Stretch;
-use crate::signal::terms::Terms;
-use crate::signal::test_functions::{Seen, TestFunctions};
+use crate::signal::terms::{Terms, slope};
+use crate::signal::test_functions::{LANES, Seen, TestFunctions};
+use crate::thresholds::radius::LONG;
 
 /// Σ w φ |ω| ω of each test function, ω = P y − b.
 pub(crate) struct Squared {
@@ -38,23 +42,19 @@ impl Squared {
         let acts = terms.quadratic != 0.0;
         let of_sensor = |column: &Column| acts && column.effect().change_of_rate(&Vector3::zeros()).is_some();
         let mut sums = Squared {
-            motion: none(),
+            motion: motion(stretch, noise, terms, tests),
             readings: none(),
             sensor: columns.iter().map(|c| if of_sensor(c) { none() } else { Vec::new() }).collect(),
         };
-        for (i, n) in noise.iter().enumerate() {
+        for (i, n) in noise.iter().enumerate().filter(|_| acts) {
             let reading = stretch.rates[i] - n;
             let w = terms.rate(&reading);
-            let (value, slope) = (w * w.norm(), slope(&w));
-            let linear = value + slope * (terms.sensor * n);
-            let changes: Vec<Option<Vector3<f64>>> = columns
-                .iter()
-                .take(if acts { columns.len() } else { 0 })
-                .map(|column| column.effect().change_of_rate(&reading).map(|change| slope * change))
-                .collect();
+            let slope = slope(&w);
+            let linear = w * w.norm() + slope * (terms.sensor * n);
+            let change = |column: &Column| column.effect().change_of_rate(&reading).map(|c| slope * c);
+            let changes: Vec<Option<Vector3<f64>>> = columns.iter().map(change).collect();
             for (m, _, by) in Seen::new(tests, stretch.times[i]).each() {
                 let by = by * stretch.weights[i];
-                sums.motion[m] += value * by;
                 sums.readings[m] += linear * by;
                 for (sum, change) in sums.sensor.iter_mut().zip(&changes) {
                     if let (Some(sum), Some(change)) = (sum.get_mut(m), change) {
@@ -64,5 +64,46 @@ impl Squared {
             }
         }
         Some(sums)
+    }
+}
+
+/// Σ w φ |ω| ω at the readings less the noise.
+fn motion(
+    stretch: &Stretch,
+    noise: &[Vector3<f64>],
+    terms: &Terms,
+    tests: &TestFunctions,
+) -> Vec<Vector3<f64>> {
+    // the halves of a long stretch side by side, whatever the machine is
+    let (count, long) = (noise.len(), noise.len() > LONG);
+    let middle = if long { count / 2 } else { 0 };
+    let of = |samples: Range<usize>| {
+        let mut sums = core::array::from_fn(|_| tests.room());
+        add(stretch, noise, samples, terms, tests, &mut sums);
+        sums
+    };
+    let (later, before) = both(long, || of(middle..count), || of(0..middle));
+    (0..tests.count).map(|m| Vector3::from_fn(|p, _| later[p][m] + before[p][m])).collect()
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn add(
+    stretch: &Stretch,
+    noise: &[Vector3<f64>],
+    samples: Range<usize>,
+    terms: &Terms,
+    tests: &TestFunctions,
+    sums: &mut [Vec<f64>; 3],
+) {
+    for i in samples {
+        let w = terms.rate(&(stretch.rates[i] - noise[i]));
+        let value = w * (w.norm() * stretch.weights[i]);
+        let seen = Seen::new(tests, stretch.times[i]);
+        for p in 0..3 {
+            let own = &mut sums[p][seen.first..seen.first + LANES];
+            for (sum, by) in own.iter_mut().zip(&seen.value) {
+                *sum += by * value[p];
+            }
+        }
     }
 }

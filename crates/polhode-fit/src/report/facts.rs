@@ -161,7 +161,8 @@ impl Facts<'_> {
         };
         let is_free = free_body && !weak.has_torque_noise();
         let left = motions.as_ref().map(|motions| motions.left).filter(|_| is_free);
-        let grounds = self.grounds(open, suspect, left);
+        let size = self.size(&together, &at).map(|(_, size)| size);
+        let grounds = Grounds { size, ..self.grounds(open, suspect, left) };
         estimate.warnings = warnings(&estimate, &grounds);
         Ok(estimate)
     }
@@ -197,6 +198,7 @@ impl Facts<'_> {
             found: self.settings.torque == TorqueModel::Auto,
             noise_found: self.settings.torque_noise == TorqueNoise::Fitted,
             driven: self.input.is_some(),
+            size: None,
         }
     }
 
@@ -230,6 +232,13 @@ impl Facts<'_> {
         Ok((Some(inertia), Some(covariance)))
     }
 
+    /// The place among the columns that are kept of the factor u of wheel momenta and torques, and u in its standard deviations.
+    fn size(&self, together: &DMatrix<f64>, at: &Unknowns) -> Option<(usize, f64)> {
+        let is_input = |&k: &usize| self.chosen.weak.columns[k].class() == Class::Input;
+        let place = self.joint.kept.iter().position(is_input)?;
+        Some((place, at.c[self.joint.kept[place]] / together[(place, place)].sqrt()))
+    }
+
     /// The absolute tensor J/u by wheel momenta and torques, where u stands out of its noise; `together` is the covariance
     /// of the columns that are kept and the tensor.
     fn by_inputs(
@@ -239,12 +248,10 @@ impl Facts<'_> {
         together: &DMatrix<f64>,
         at: &Unknowns,
     ) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
-        let is_input = |&k: &usize| self.chosen.weak.columns[k].class() == Class::Input;
-        let Some(place) = self.joint.kept.iter().position(is_input) else { return Ok((None, None)) };
-        let u = at.c[self.joint.kept[place]];
-        if u <= SURE * together[(place, place)].sqrt() {
+        let Some((place, _)) = self.size(together, at).filter(|(_, size)| *size > SURE) else {
             return Ok((None, None));
-        }
+        };
+        let u = at.c[self.joint.kept[place]];
         let trace = unit / u;
         let inertia =
             Inertia::from_tensor(j * trace).map_err(|error| FitError::Solver(SolverFailure::Scale(error)))?;

@@ -125,7 +125,11 @@ impl Identifiability {
 
     /// Both lists in one sentence.
     pub fn verdict(&self) -> String {
-        let known = if self.known.is_empty() { "nothing is known".into() } else { joined(&self.known) };
+        let known = match (self.known.is_empty(), self.rank) {
+            (true, 0) => "nothing".into(),
+            (true, _) => "no axis and no ratio, only combinations of them".into(),
+            _ => joined(&self.known),
+        };
         format!("{} of 5 numbers are known. {}. Known: {known}", self.rank, joined(&self.null_directions))
     }
 }
@@ -212,4 +216,23 @@ fn common_frame(null: &[Matrix3<f64>]) -> Option<Matrix3<f64>> {
         n[(0, 1)].abs().max(n[(0, 2)].abs()).max(n[(1, 2)].abs())
     };
     null.iter().all(|t| off(t) < PRINCIPAL).then_some(frame)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is known may be combinations that have no name of their own: then not nothing is known.
+    #[test]
+    fn known_numbers_without_a_name_are_not_nothing() {
+        let of = |rank| Identifiability {
+            deviations: [1.0; 5],
+            rank,
+            null_directions: Vec::new(),
+            null_tensors: Vec::new(),
+            known: Vec::new(),
+        };
+        assert!(of(3).verdict().ends_with("Known: no axis and no ratio, only combinations of them"));
+        assert!(of(0).verdict().ends_with("Known: nothing"));
+    }
 }

@@ -69,7 +69,7 @@ impl Estimate {
 
     /// `None` where the errors of the sensor are not known.
     fn largest_error(&self) -> Option<NextStep> {
-        let of_sensor = self.systematic.iter().filter(|line| !line.name.starts_with("wheel"));
+        let of_sensor = self.systematic.iter().filter(|line| line.is_of_sensor());
         let times = |line: &Systematic| {
             let share = |k: usize| line.principal[k].abs() / (SURE * self.sigma_principal[k]);
             (0..3).map(share).filter(|share| share.is_finite()).fold(0.0, f64::max)

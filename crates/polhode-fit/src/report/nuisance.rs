@@ -52,21 +52,29 @@ pub struct FittedTorque {
     pub ratios_without: Option<[f64; 2]>,
 }
 
-/// What an error of the sensor, or a wheel inside the body, that the fit takes to be zero would do to the moments.
+/// What an error of the sensor, or a wheel or a magnet in the body, that the fit takes to be zero would do to the moments.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Systematic {
-    /// The error, as `offset_x`; `wheel_x` is a constant momentum inside the body, `walk` a random walk of the offsets.
+    /// The error, as `offset_x`; `wheel_x` is a constant momentum inside the body, `walk` a random walk of the offsets,
+    /// `magnet` the torque on a magnet in the body in a field that is fixed in space, both in random directions, over the trace.
     pub name: &'static str,
     /// Its size.
     pub size: f64,
     /// The unit of its size, empty for a ratio.
     pub unit: &'static str,
-    /// The change of the principal moments, as shares of the trace, that an error of this size makes; of a walk its
-    /// standard deviation.
+    /// The change of the principal moments, as shares of the trace, that an error of this size makes; of a walk and of a
+    /// magnet its standard deviation.
     pub principal: [f64; 3],
     /// The same of I₁/I₃ and I₂/I₃.
     pub ratios: [f64; 2],
+}
+
+impl Systematic {
+    /// Whether it is an error of the sensor, not a wheel or a magnet in the body.
+    pub fn is_of_sensor(&self) -> bool {
+        !self.name.starts_with("wheel") && self.name != "magnet"
+    }
 }
 
 /// How a prior tensor and a record agree.

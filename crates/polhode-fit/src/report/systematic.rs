@@ -1,11 +1,11 @@
 //! What errors of the sensor, and a wheel inside the body, that a fit takes to be zero would do to the moments.
 
-use crate::thresholds::errors::{MOST, WALK, WALK_STEPS, WHEEL};
+use crate::thresholds::errors::{MAGNET, MOST, WALK, WALK_STEPS, WHEEL};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::columns::column::Column;
 use crate::columns::rotor::Rotor;
-use crate::columns::sets::{reported_errors, walk_columns};
+use crate::columns::sets::{magnet_columns, reported_errors, walk_columns};
 use crate::models::equations::Equations;
 use crate::physical::coordinates::{pair, tensor};
 use crate::report::nuisance::Systematic;
@@ -48,6 +48,12 @@ fn lines(own: &[Column], j: &Matrix3<f64>, stretches: &[Stretch], rms: f64) -> V
     }
     let momentum = (squares / f64::max(count, 1.0)).sqrt();
     lines.extend([0, 1, 2].map(|axis| alone(Column::new(Rotor(axis), None), WHEEL, momentum)));
+    let magnet = magnet_columns(stretches);
+    if magnet.len() <= MOST {
+        // of both directions at random each product has a third of the size
+        let columns = magnet.into_iter().map(|column| (column, MAGNET / 3.0 / rms / rms)).collect();
+        lines.push(Line { name: "magnet", unit: "rad/s^2", size: MAGNET, columns });
+    }
     let walk = walk_columns(stretches, WALK / rms / rms.sqrt(), WALK_STEPS);
     if walk.len() <= MOST {
         let step = |column: Column| column.prior.map(|size| (column.with_prior(None), size));
@@ -57,7 +63,7 @@ fn lines(own: &[Column], j: &Matrix3<f64>, stretches: &[Stretch], rms: f64) -> V
     lines
 }
 
-/// The lines of the report, and the errors of the sensor that explain the record better than its torques; `axes` and `moments` are the principal ones, ascending, and `rms` is the unit rate, rad/s.
+/// The lines of the report, and what the fit takes to be zero and would explain the record better; `axes` and `moments` are the principal ones, ascending, and `rms` is the unit rate, rad/s.
 ///
 /// With g the derivative of the equations with respect to an error, the estimate moves by what makes |G δ − g| least.
 pub(crate) fn systematic(
@@ -74,7 +80,7 @@ pub(crate) fn systematic(
     let columns: Vec<Column> =
         equations.errors().iter().copied().chain(weak.columns.iter().copied()).collect();
     let Some(whitened) = equations.with_errors(&weak.columns) else { return (Vec::new(), None) };
-    let suspect = suspect(weak, &columns, errors, &whitened, variance);
+    let suspect = suspect(weak, stretches, &columns, errors, &whitened, (variance, rms));
     let rows: Vec<&[f64]> = whitened.iter().map(Vec::as_slice).collect();
     let Some(steps) = responses(&rows, &columns, errors, variance.sqrt()) else {
         return (Vec::new(), suspect);

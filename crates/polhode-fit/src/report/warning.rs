@@ -8,6 +8,7 @@ use crate::report::nuisance::FittedTorque;
 use crate::report::parts::{Halves, Scatter};
 use crate::report::torque_free::{InvariantTrend, Memory, Whiteness};
 use crate::thresholds::likelihood::LINEAR;
+use crate::thresholds::warnings::NEGATIVE;
 use crate::units::product::{UnitProduct, alternatives};
 use polhode::num::Shown;
 
@@ -94,8 +95,11 @@ pub enum Warning {
     MomentumTrend(InvariantTrend),
     /// The energy ω·J ω changes.
     EnergyTrend(InvariantTrend),
-    /// Wheel momenta and torques of the record are too small to give the tensor its size, or would give it a negative one.
-    NoScale,
+    /// Wheel momenta and torques of the record are too small to give the tensor its size, or give it a negative one.
+    NoScale {
+        /// One over the trace that they give, in its standard deviations.
+        size: f64,
+    },
     /// A torque was found and reckoned with.
     Torque(FittedTorque),
     /// A constant torque that is no part of the fit would explain the record better.
@@ -105,16 +109,18 @@ pub enum Warning {
         /// By how much it would turn the body within half of the longest segment, rad.
         turn: f64,
     },
-    /// Errors of the sensor, which the fit takes to be zero, explain the record better than torques do.
-    Sensor {
-        /// What they are, in words.
+    /// What the fit takes to be zero, as errors of the sensor, a wheel, a magnet, explains the record better than what was fitted.
+    LeftOut {
+        /// What it is, in words.
         what: &'static str,
-        /// The largest of them.
+        /// The largest of its components.
         size: f64,
         /// Its unit, empty for a ratio.
         unit: &'static str,
-        /// Gain of log-likelihood with them, the torque noise as it was fitted without them.
+        /// Gain of log-likelihood with it, the torque noise as it was fitted without it.
         gain: f64,
+        /// What helps, in words that go on from what the tensor may be.
+        remedy: &'static str,
     },
     /// Two parts of the record contradict each other.
     Halves(Halves),
@@ -269,8 +275,13 @@ impl fmt::Display for Warning {
             ),
             Self::MomentumTrend(trend) => torque(f, "momentum |J w|", trend),
             Self::EnergyTrend(trend) => torque(f, "energy w J w", trend),
-            Self::NoScale => f.write_str(
-                "the size of the tensor is unknown: the wheel momenta and torques do not stand out of the noise, or their sign is wrong",
+            Self::NoScale { size } if *size < -NEGATIVE => write!(
+                f,
+                "the wheel momenta and torques give the tensor a negative size, by {:.0} of its deviations: their sign is wrong",
+                -size
+            ),
+            Self::NoScale { .. } => f.write_str(
+                "the size of the tensor is unknown: the wheel momenta and torques do not stand out of the noise",
             ),
             Self::Torque(torque) => reckoned(f, torque),
             Self::ConstantTorque { gain, turn } => write!(
@@ -279,12 +290,12 @@ impl fmt::Display for Warning {
                  turn the body by {turn:.2} rad within half of the longest segment: fit shorter windows, in which it turns the body by less than \
                  {LINEAR} rad, with a constant torque, or the rates"
             ),
-            Self::Sensor { what, size, unit, gain } => {
+            Self::LeftOut { what, size, unit, gain, remedy } => {
                 let size = format!("{size:.1e} {unit}");
                 write!(
                     f,
                     "{what}, up to {}, would explain the record better than what was fitted (log-likelihood higher by {gain:.0}): \
-                     the tensor may be off by more than its deviations, unless they are fitted too, with a prior",
+                     the tensor may be off by more than its deviations{remedy}",
                     size.trim_end()
                 )
             }

@@ -27,7 +27,7 @@ pub(super) struct Grounds<'a> {
     pub(super) variance: f64,
     /// Units that explain the record as well.
     pub(super) open: Option<&'a Others>,
-    /// Errors of the sensor that explain the record better.
+    /// What the fit takes to be zero and would explain the record better.
     pub(super) suspect: Option<Suspect>,
     /// What the free motion leaves of the samples, of a free body: mean square of a component over that of the noise, and the number of
     /// components.
@@ -42,6 +42,8 @@ pub(super) struct Grounds<'a> {
     pub(super) noise_found: bool,
     /// Whether wheels or known torques act, which change |J ω| and ω·J ω.
     pub(super) driven: bool,
+    /// One over the trace that they give, in its standard deviations.
+    pub(super) size: Option<f64>,
 }
 
 impl Grounds<'_> {
@@ -101,9 +103,7 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     let left = grounds.left.filter(|(left, components)| *left > surely(*components));
     list.extend(left.map(|(left, _)| Warning::Vibration { times: left.sqrt(), noise: e.noise_sigma }));
     if driven {
-        if e.inertia.is_none() {
-            list.push(Warning::NoScale);
-        }
+        list.extend(grounds.size.filter(|_| e.inertia.is_none()).map(|size| Warning::NoScale { size }));
     } else if e.torque.model == TorqueModel::None {
         let counts = |trend: &InvariantTrend| trend.significant();
         list.extend(e.momentum_trend.filter(counts).map(Warning::MomentumTrend));
@@ -116,8 +116,8 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     if noise_found && density > 0.0 && e.unexplained.is_none_or(|share| share > UNEXPLAINED) {
         list.push(Warning::TorqueNoise { density, unexplained: e.unexplained });
     }
-    if let Some(Suspect { what, size, unit, gain }) = suspect {
-        list.push(Warning::Sensor { what, size, unit, gain });
+    if let Some(Suspect { what, remedy, size, unit, gain }) = suspect {
+        list.push(Warning::LeftOut { what, size, unit, gain, remedy });
     }
     list.extend(halves(weak, grounds.variance * misfit.max(1.0)).map(Warning::Halves));
     list.extend(grounds.scatter.map(Warning::Scatter));

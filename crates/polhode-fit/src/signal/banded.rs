@@ -67,14 +67,7 @@ impl Banded {
 
     /// L⁻¹ b, of a factor, in place; b has rows of `width` numbers, one for each right-hand side.
     pub(crate) fn forward(&self, b: &mut [f64], width: usize) {
-        for j in 0..self.size {
-            let (known, rest) = b[j * width..].split_at_mut(width);
-            let column = self.column(j);
-            known.iter_mut().for_each(|value| *value /= column[0]);
-            for (l, row) in column[1..].iter().zip(rest.chunks_exact_mut(width)) {
-                row.iter_mut().zip(&*known).for_each(|(sum, value)| *sum -= l * value);
-            }
-        }
+        forward(&self.columns, self.pitch, self.band, b, width);
     }
 
     /// log |L Lᵀ| of a factor L.
@@ -202,6 +195,21 @@ fn factor(columns: &mut [f64], pitch: usize, band: usize) -> bool {
         let end = (j + pivots + band).min(size);
         eliminate(&mut columns[j * pitch..end * pitch], pitch, pivots, band)
     })
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn forward(columns: &[f64], pitch: usize, band: usize, b: &mut [f64], width: usize) {
+    for (j, column) in columns.chunks_exact(pitch).enumerate() {
+        let (known, rest) = b[j * width..].split_at_mut(width);
+        for value in known.iter_mut() {
+            *value /= column[0];
+        }
+        for (l, row) in column[1..=band].iter().zip(rest.chunks_exact_mut(width)) {
+            for (sum, value) in row.iter_mut().zip(&*known) {
+                *sum -= l * value;
+            }
+        }
+    }
 }
 
 /// Pivots that are taken off the columns after them at once.

@@ -162,6 +162,7 @@ fn add_waiting(near: &mut [Box<Near>; WITH_SLOPE + WITH_VALUE], waiting: &mut Wa
 }
 
 /// Moves the sums of the tests from `first` on to those of all.
+#[inline(always)]
 fn hand_over(near: &mut [Box<Near>], first: usize, sums: &mut Running) {
     for (near, sums) in near.iter_mut().zip(sums) {
         for (near, sum) in near.0.iter_mut().zip(&mut sums[first..first + LANES]) {

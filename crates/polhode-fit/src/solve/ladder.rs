@@ -178,6 +178,7 @@ impl Ladder<'_> {
         let mut none = self.rung(TorqueModel::None, self.descent(TorqueModel::None, radius, near)?);
         none.equations = self.equations(&none.weak);
         let gain = gain_of(&none, &[TorqueModel::Constant], variance);
+        let of_drag3 = gain_of(&none, &[TorqueModel::Drag3], variance);
         let floor = none.likelihood;
         // what is hopeless beside a drag is not tried in a long record
         let beside =
@@ -191,8 +192,12 @@ impl Ladder<'_> {
         let mut climb = |best: Rung, next: Rung| {
             fitted.push(next.fitted(floor, variance));
             let coefficients = |rung: &Rung| torque_columns(rung.model).len();
-            let more = coefficients(&next).saturating_sub(coefficients(&best)).max(1);
-            let asked = if best.model == TorqueModel::None { asked(next.model) } else { threshold(more) };
+            let more = coefficients(&next).saturating_sub(coefficients(&best));
+            let asked = match best.model {
+                TorqueModel::None => asked(next.model),
+                _ if more == 0 => 0.0,
+                _ => threshold(more),
+            };
             let surpasses = !best.weak.has_settled() || next.likelihood - best.likelihood > asked;
             if next.weak.has_settled() && surpasses { next } else { best }
         };
@@ -203,9 +208,13 @@ impl Ladder<'_> {
         if best.model == TorqueModel::Drag {
             best.equations = self.equations(&best.weak);
         }
-        if best.model == TorqueModel::Drag
-            && may_be_drag3(&best, variance)
-            && let Ok(drag3) = self.descent(TorqueModel::Drag3, radius, Some(Reached::of(&best.weak)))
+        // a drag that has no part along one axis is far from one in proportion to the momentum
+        let is_drag3 = match best.model {
+            TorqueModel::Drag => may_be_drag3(&best, variance),
+            TorqueModel::Constant => of_drag3 > gain,
+            _ => false,
+        };
+        if is_drag3 && let Ok(drag3) = self.descent(TorqueModel::Drag3, radius, Some(Reached::of(&best.weak)))
         {
             best = climb(best, self.rung(TorqueModel::Drag3, drag3));
         }

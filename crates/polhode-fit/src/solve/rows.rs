@@ -1,16 +1,21 @@
 //! The rows of the weak equations of one stretch.
 
-use nalgebra::Vector3;
+use core::ops::Range;
+
+use nalgebra::{Matrix3, Vector3};
+use polhode::rotation::Quat;
 
 use crate::columns::column::{Column, Unknowns, terms_of};
 use crate::columns::effect::SampleChange;
 use crate::columns::equation::{Corrected, Equation, crossed};
 use crate::columns::squared::Squared;
 use crate::physical::coordinates::basis;
-use crate::signal::moments::{Group, Moments, groups};
+use crate::signal::both::both;
+use crate::signal::moments::{Moments, group, ranges};
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::Terms;
 use crate::signal::test_functions::{Seen, TestFunctions};
+use crate::thresholds::radius::LONG;
 
 /// The equations of a stretch row by row, linearised at samples `rates` − `noise`: derivatives with respect to the columns
 /// and to the coordinates of the tensor, and residuals, not whitened.
@@ -25,17 +30,15 @@ pub(crate) fn rows(
     let moments = Moments::new(stretch, noise, tests);
     let width = columns.len() + 6;
     let mut rows = vec![0.0; 3 * tests.count * width];
-    // columns that act on the samples one by one, of which one at a time is kept beside the rows
-    let groups = || groups(stretch, noise, tests.radius);
-    let mut is_put: Vec<bool> = columns.iter().map(|column| !column.acts_on(stretch)).collect();
-    for (k, column) in columns.iter().enumerate().filter(|(_, column)| column.acts_on(stretch)) {
-        let Some(change) = column.effect().sample_change(&terms) else { continue };
-        is_put[k] = true;
-        let changed = changed(groups(), &terms, tests, change);
-        for (row, value) in rows.chunks_exact_mut(width).zip(changed.iter().flat_map(Vector3::iter)) {
-            row[k] = *value;
-            row[width - 1] += value * origin.c[k];
-        }
+    add_changes(&mut rows, stretch, noise, columns, &terms, tests);
+    let acts_on_samples = |column: &Column| {
+        let effect = column.effect();
+        effect.sample_change(&terms).is_some() || effect.torque_at(&Matrix3::identity()).is_some()
+    };
+    let is_put: Vec<bool> =
+        columns.iter().map(|column| !column.acts_on(stretch) || acts_on_samples(column)).collect();
+    for row in rows.chunks_exact_mut(width) {
+        row[width - 1] = row.iter().zip(&origin.c).map(|(value, c)| value * c).sum();
     }
     let squared = Squared::new(stretch, noise, &terms, tests, columns);
     for m in 0..tests.count {
@@ -71,21 +74,88 @@ pub(crate) fn rows(
     rows
 }
 
-/// What the equations of each test change with a change of the rates, given at a group of samples and its rate.
-fn changed(
-    groups: impl Iterator<Item = Group>,
+/// Adds the columns that act on the samples one by one.
+fn add_changes(
+    rows: &mut [f64],
+    stretch: &Stretch,
+    noise: &[Vector3<f64>],
+    columns: &[Column],
     terms: &Terms,
     tests: &TestFunctions,
-    change: SampleChange<'_>,
-) -> Vec<Vector3<f64>> {
-    let mut sums = vec![Vector3::zeros(); tests.count];
-    for group in groups {
-        let w = terms.rate(&group.reading);
-        let change = change(&group, &w) * group.weight;
-        let (by_slope, by_value) = (terms.j * change, terms.by_rate(&w, &group.wheel) * change);
-        for (m, slope, value) in Seen::new(tests, group.time).each() {
-            sums[m] += by_value * value - by_slope * slope;
+) {
+    let width = columns.len() + 6;
+    let acting: Vec<usize> = (0..columns.len()).filter(|&k| columns[k].acts_on(stretch)).collect();
+    let turns = acting.iter().any(|&k| columns[k].effect().torque_at(&Matrix3::identity()).is_some());
+    let turned = if turns { turned(stretch, noise, terms, tests) } else { Vec::new() };
+    // the halves of a long stretch side by side, whatever the machine is
+    let long = noise.len() > LONG;
+    let split = if long { tests.count / 2 } else { 0 };
+    let (before, after) = rows.split_at_mut(3 * width * split);
+    let add = |rows: &mut [f64], own: Range<usize>| {
+        let changes = acting.iter().filter_map(|&k| Some((k, columns[k].effect().sample_change(terms)?)));
+        let changes: Vec<(usize, SampleChange<'_>)> = changes.collect();
+        let torques = |to_body: &Matrix3<f64>| {
+            let each = acting.iter().filter_map(|&k| Some((k, columns[k].effect().torque_at(to_body)?)));
+            each.collect::<Vec<(usize, Vector3<f64>)>>()
+        };
+        let by_attitude = torques(&Matrix3::identity());
+        let places = || changes.iter().map(|(k, _)| *k).chain(by_attitude.iter().map(|(k, _)| *k));
+        let Some((first, last)) = places().min().zip(places().max()) else { return };
+        // by φ' and by φ, of all columns between the first and the last of these
+        let mut sums = vec![[0.0; 6]; last + 1 - first];
+        for (number, range) in ranges(stretch, tests.radius, 0).enumerate() {
+            let [start, end] = [range.start, range.end - 1].map(|sample| tests.at(stretch.times[sample]));
+            if end.end <= own.start {
+                continue;
+            }
+            if start.start >= own.end {
+                break;
+            }
+            let group = group(stretch, noise, range);
+            let w = terms.rate(&group.reading);
+            let by_rate = terms.by_rate(&w, &group.wheel);
+            for (k, change) in &changes {
+                let change = change(&group, &w) * group.weight;
+                let (slope, value) = (terms.j * -change, by_rate * change);
+                sums[k - first] = [slope.x, slope.y, slope.z, value.x, value.y, value.z];
+            }
+            for (k, torque) in turned.get(number).map(torques).into_iter().flatten() {
+                let value = torque * -group.weight;
+                sums[k - first] = [0.0, 0.0, 0.0, value.x, value.y, value.z];
+            }
+            for (m, slope, value) in Seen::new(tests, group.time).each().filter(|(m, ..)| own.contains(m)) {
+                for p in 0..3 {
+                    let row = &mut rows[(3 * (m - own.start) + p) * width..][first..=last];
+                    for (sum, by) in row.iter_mut().zip(&sums) {
+                        *sum += by[3 + p] * value + by[p] * slope;
+                    }
+                }
+            }
         }
-    }
-    sums
+    };
+    both(long, || add(before, 0..split), || add(after, split..tests.count));
+}
+
+/// What takes coordinates along the axes that the body had at the first group of samples to those at each.
+///
+/// From one to the next the rate is taken to change evenly: W. Magnus, Commun. Pure Appl. Math. 7 (1954) 649, to the fourth order.
+fn turned(
+    stretch: &Stretch,
+    noise: &[Vector3<f64>],
+    terms: &Terms,
+    tests: &TestFunctions,
+) -> Vec<Matrix3<f64>> {
+    let mut attitude = Quat::<f64>::identity();
+    let mut before: Option<(f64, Vector3<f64>)> = None;
+    let each = ranges(stretch, tests.radius, 0).map(|range| {
+        let group = group(stretch, noise, range);
+        let (time, w) = (group.time, terms.rate(&group.reading));
+        if let Some((last, from)) = before.replace((time, w)) {
+            let h = time - last;
+            let turn = (from + w) * (0.5 * h) + from.cross(&w) * (h * h / 12.0);
+            attitude = (attitude * Quat::exponential(turn.into())).normalized();
+        }
+        Matrix3::from_columns(&[0, 1, 2].map(|k| attitude.rotate_back(Vector3::ith(k, 1.0).into()).into()))
+    });
+    each.collect()
 }

@@ -1,5 +1,6 @@
 //! Many rows of a least-squares problem as one upper triangle.
 
+use multiversion::multiversion;
 use nalgebra::DMatrix;
 
 use crate::thresholds::stacked::TOGETHER;
@@ -38,49 +39,67 @@ impl Triangle {
 
     /// Takes the waiting rows into the triangle.
     fn reflect(&mut self) {
-        let rows = core::mem::take(&mut self.waiting);
-        let mut rest = self.block.as_mut_slice();
-        for j in 0..self.r.ncols() {
-            let (column, later) = rest.split_at_mut(TOGETHER);
-            rest = later;
-            let column = &mut column[..rows];
-            let corner = self.r[(j, j)];
-            let size = column.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-            if size == 0.0 {
-                continue; // nothing below the corner
-            }
-            // the reflection I − 2 v vᵀ/|v|², in units of the largest number, so that no square overflows
-            let size = size.max(corner.abs());
-            column.iter_mut().for_each(|value| *value /= size);
-            let (top, below) = (corner / size, dot(column, column));
-            let first = top + (top * top + below).sqrt().copysign(top);
-            let twice = 2.0 / (first * first + below);
-            self.r[(j, j)] = (top - first) * size;
-            for (k, other) in rest.chunks_exact_mut(TOGETHER).enumerate() {
-                let (other, entry) = (&mut other[..rows], &mut self.r[(j, j + 1 + k)]);
-                let along = twice * (first * *entry + dot(column, other));
-                *entry -= along * first;
-                for (value, v) in other.iter_mut().zip(&*column) {
-                    *value -= along * v;
-                }
-            }
-        }
+        reflect(&mut self.r, &mut self.block, core::mem::take(&mut self.waiting));
         self.block.fill(0.0);
     }
 }
 
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn reflect(r: &mut DMatrix<f64>, block: &mut [f64], rows: usize) {
+    let mut rest = block;
+    for j in 0..r.ncols() {
+        let (column, later) = rest.split_at_mut(TOGETHER);
+        rest = later;
+        let column = &mut column[..rows];
+        let corner = r[(j, j)];
+        let mut size = 0.0_f64;
+        // no closures: they would not be compiled for wide registers
+        for value in column.iter() {
+            size = size.max(value.abs());
+        }
+        if size == 0.0 {
+            continue; // nothing below the corner
+        }
+        // the reflection I − 2 v vᵀ/|v|², in units of the largest number, so that no square overflows
+        let size = size.max(corner.abs());
+        for value in column.iter_mut() {
+            *value /= size;
+        }
+        let (top, below) = (corner / size, dot(column, column));
+        let first = top + (top * top + below).sqrt().copysign(top);
+        let twice = 2.0 / (first * first + below);
+        r[(j, j)] = (top - first) * size;
+        for (k, other) in rest.chunks_exact_mut(TOGETHER).enumerate() {
+            let (other, entry) = (&mut other[..rows], &mut r[(j, j + 1 + k)]);
+            let along = twice * (first * *entry + dot(column, other));
+            *entry -= along * first;
+            for (value, v) in other.iter_mut().zip(&*column) {
+                *value -= along * v;
+            }
+        }
+    }
+}
+
 /// Sums side by side, which the compiler puts into vectors.
+#[inline(always)]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (a, a_rest) = a.as_chunks::<8>();
     let (b, b_rest) = b.as_chunks::<8>();
     let mut sums = [0.0; 8];
     for (a, b) in a.iter().zip(b) {
-        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
-            *sum += a * b;
+        for k in 0..8 {
+            sums[k] += a[k] * b[k];
         }
     }
-    let rest: f64 = a_rest.iter().zip(b_rest).map(|(a, b)| a * b).sum();
-    sums.iter().sum::<f64>() + rest
+    let mut rest = 0.0;
+    for (a, b) in a_rest.iter().zip(b_rest) {
+        rest += a * b;
+    }
+    let mut sum = 0.0;
+    for own in sums {
+        sum += own;
+    }
+    sum + rest
 }
 
 #[cfg(test)]

@@ -1,9 +1,12 @@
 //! What a report names as the cause: a tensor that changes, a sensor that stands still, torques at random.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
-use polhode_fit::{Disturbances, Gyroscope, Record, Settings, TorqueModel, Warning, fit, simulate_with};
+use polhode_fit::{
+    Disturbances, FitError, Gyroscope, Record, SensorPriors, Settings, TorqueModel, Warning, fit,
+    simulate_with,
+};
 
 use crate::measured::torques::motion;
 use crate::measured::{random_rotation, sampled, turned};
@@ -189,4 +192,92 @@ fn samples_that_the_free_motion_does_not_follow_are_named() {
         println!("{k}: {:?}", shaken.iter().map(ToString::to_string).collect::<Vec<_>>());
         assert!(!shaken.is_empty() && free.is_empty(), "{k}: {free:?}");
     }
+}
+
+/// Rates of a body with a magnet `along` an axis of it, in a field `b` that is fixed in space, by the midpoint rule.
+fn with_magnet(
+    j: &Matrix3<f64>,
+    omega: Vector3<f64>,
+    times: &[f64],
+    (along, b): (Vector3<f64>, Vector3<f64>),
+) -> Vec<Vector3<f64>> {
+    let inverse = j.try_inverse().unwrap();
+    let slope = |w: &Vector3<f64>, q: &UnitQuaternion<f64>| {
+        inverse * (along.cross(&q.inverse_transform_vector(&b)) - w.cross(&(j * w)))
+    };
+    let turned = |q: &UnitQuaternion<f64>, turn: Vector3<f64>| q * UnitQuaternion::from_scaled_axis(turn);
+    let (mut w, mut q, mut t) = (omega, UnitQuaternion::identity(), times[0]);
+    let mut rates = Vec::new();
+    for &end in times {
+        let h = (end - t) / 10.0;
+        for _ in 0..10 {
+            let (half, there) = (w + slope(&w, &q) * (0.5 * h), turned(&q, w * (0.5 * h)));
+            (w, q) = (w + slope(&half, &there) * h, turned(&q, half * h));
+        }
+        t = end;
+        rates.push(w);
+    }
+    rates
+}
+
+/// A magnet too weak for any other warning shifts the tensor; it is named with its size, and no record without one is.
+#[test]
+fn a_torque_that_is_fixed_in_space_is_named() {
+    let (times, mut random) = (sampled(20, 60), Random::new(645));
+    let (mut named, count) = ([0, 0], 5);
+    for trial in 0..2 * count {
+        let size = if trial < count { 1e-3 } else { 0.0 };
+        let j = turned(SHAPE, &random_rotation(&mut random));
+        let [omega, along, b] = [0, 1, 2].map(|_| random.normal_vector().normalize());
+        let rates = noisy(&with_magnet(&j, omega, &times, (along * size, b)), 4e-3, &mut random);
+        let e = fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap();
+        let found = e.warnings.iter().find_map(|warning| match warning {
+            Warning::LeftOut { what, size, .. } => Some((*what, *size)),
+            _ => None,
+        });
+        if let Some((what, found)) = found {
+            named[usize::from(size == 0.0)] += 1;
+            assert!(what.starts_with("a torque that is fixed in space"), "{what}");
+            assert!((0.2..5.0).contains(&(found / size)), "{found}");
+        }
+        let line = e.systematic.iter().find(|line| line.name == "magnet").unwrap();
+        assert!(!line.is_of_sensor() && line.principal.iter().all(|shift| *shift > 0.0), "{line:?}");
+    }
+    assert!(named[0] >= 4 && named[1] == 0, "{named:?}");
+}
+
+/// A drag that has no part along one axis is nearer to a constant torque than to a drag in proportion to the momentum.
+#[test]
+fn a_drag_without_a_part_along_one_axis_is_no_constant_torque() {
+    let (times, mut random) = (sampled(20, 60), Random::new(646));
+    let j = Matrix3::from_diagonal(&Vector3::from(SHAPE));
+    for _ in 0..6 {
+        let omega = random.normal_vector().normalize();
+        let torque = |_: f64, w: &Vector3<f64>| Vector3::new(-3e-4 * w.x, -3e-4 * w.y, 0.0);
+        let rates = noisy(&motion(&j, omega, &times, &torque), 3e-3, &mut random);
+        let e = fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap();
+        assert_ne!(e.torque.model, TorqueModel::Constant);
+    }
+}
+
+/// Where the errors of the sensor cannot be told from the tensor, they are the cause, and not the motion.
+#[test]
+fn errors_of_the_sensor_that_leave_the_tensor_open_are_the_cause() {
+    let times: Vec<f64> = (0..=100).map(|k| f64::from(k) / 100.0).collect();
+    let body = Inertia::from_tensor(Matrix3::new(1.0, 0.1, 0.2, 0.1, 2.0, 0.0, 0.2, 0.0, 2.6)).unwrap();
+    let gyroscope = Gyroscope::default().with_noise(0.02);
+    let sensor = SensorPriors::default().with_misalignment(0.2).with_axis_scales(0.2);
+    let mut named = 0;
+    for seed in 0..24 {
+        let start = Vector3::new(2.0, 9.0, 5.0);
+        let acting = Disturbances::default();
+        let rates = simulate_with(&body, start, &times, &acting, &gyroscope, &mut Random::new(seed)).unwrap();
+        let record = Record::from_samples(&times, &rates).unwrap();
+        match fit(&record, &Settings::default().with_sensor(sensor)) {
+            Err(FitError::UntoldSensor) => named += 1,
+            Err(other) => panic!("{other}"),
+            Ok(_) => {}
+        }
+    }
+    assert!(named > 0);
 }

@@ -5,7 +5,7 @@ use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_fit::{
     Disturbances, Estimate, FitError, Gyroscope, Method, Record, Segment, SensorPriors, Settings,
-    TorqueModel, fit, simulate_with,
+    TorqueModel, Warning, fit, simulate_with,
 };
 
 use crate::measured::{ENTRIES, entries, random_rotation, sampled, turned};
@@ -217,5 +217,41 @@ fn the_likelihood_agrees_with_the_weak_form() {
         assert!(apart < 12.6, "{apart}");
         let ratio = exact.bound_ratio.unwrap();
         assert!((0.99..1.06).contains(&ratio), "{ratio}");
+    }
+}
+
+/// A momentum of the wrong sign gives a negative size by many deviations, one that is far too small a size within its noise.
+#[test]
+fn a_wrong_sign_of_the_wheel_is_told_from_noise() {
+    let mut random = Random::new(613);
+    for (share, is_sign) in [(0.3, true), (1e-6, false)] {
+        let case = Case::new([1.0, 2.0, 2.6], share, false, 60, &mut random);
+        let record = case.record(&Disturbances::default(), 1e-3, Vector3::zeros(), -1.0, &mut random);
+        let e = fit(&record, &plain()).unwrap();
+        let found = e.warnings.iter().find(|warning| matches!(warning, Warning::NoScale { .. }));
+        let Some(Warning::NoScale { size }) = found else { panic!("{:?}", e.warnings) };
+        assert_eq!(*size < -3.0, is_sign, "{size}");
+        assert_eq!(found.unwrap().to_string().contains("sign is wrong"), is_sign);
+    }
+}
+
+/// Exchanged components of the momentum explain nothing of the motion: that is no answer with warnings.
+#[test]
+fn exchanged_components_of_the_wheel_are_refused() {
+    let mut random = Random::new(614);
+    let mut case = Case::new([1.0, 2.0, 2.6], 1.0, false, 60, &mut random);
+    case.wheel = Vector3::new(0.9, -0.1, 0.4) * case.wheel.norm();
+    let record = case.record(&Disturbances::default(), 1e-3, Vector3::zeros(), 1.0, &mut random);
+    assert!(fit(&record, &Settings::default()).is_ok());
+    let mut exchanged = Record::default();
+    for segment in &record.segments {
+        let wheel = segment.wheel().unwrap().iter().map(|h| Vector3::new(h.y, h.x, h.z)).collect();
+        let own = Segment::new("toss", segment.times().to_vec(), segment.rates().to_vec()).unwrap();
+        exchanged.segments.push(own.with_wheel(wheel).unwrap());
+    }
+    match fit(&exchanged, &Settings::default()) {
+        Err(FitError::Contradicted { unexplained }) => assert!(unexplained > 0.15, "{unexplained}"),
+        Err(other) => panic!("{other}"),
+        Ok(e) => panic!("{:?}", e.warnings),
     }
 }

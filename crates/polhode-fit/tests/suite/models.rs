@@ -196,7 +196,7 @@ fn misaligned_and_unequal_axes_are_named_where_torque_noise_takes_their_place() 
         let rates = simulate_with(&body, omega, &times, &acting, &sensor, &mut random).unwrap();
         let found = fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap();
         let suspected = found.warnings.iter().find_map(|w| match w {
-            Warning::Sensor { what, size, gain, .. } => Some((what, size, gain)),
+            Warning::LeftOut { what, size, gain, .. } => Some((what, size, gain)),
             _ => None,
         });
         match (named, suspected) {

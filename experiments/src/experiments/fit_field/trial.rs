@@ -145,11 +145,12 @@ pub(in crate::experiments) fn lines_cover(
             let line = estimate.systematic.iter().find(|line| line.name == name);
             line.map_or(0.0, |line| (line.principal[k] * error / line.size).abs())
         };
-        let of = |random: bool| errors.iter().filter(move |(name, _)| (*name == "walk") == random);
+        let of =
+            |random: bool| errors.iter().filter(move |(name, _)| ["walk", "magnet"].contains(name) == random);
         let systematic: f64 = of(false).map(|(name, error)| change(name, *error)).sum();
-        let walk: f64 = of(true).map(|(name, size)| change(name, *size)).sum();
+        let by_chance: f64 = of(true).map(|(name, size)| change(name, *size)).sum();
         // the lines are derivatives: a tenth is left for what is not linear
         (estimate.principal[k] - moments[k]).abs()
-            <= ONE_IN_A_THOUSAND * libm::hypot(estimate.sigma_principal[k], walk) + 1.1 * systematic
+            <= ONE_IN_A_THOUSAND * libm::hypot(estimate.sigma_principal[k], by_chance) + 1.1 * systematic
     })
 }

@@ -100,6 +100,9 @@ fn trial(case: &Case, shorter: f64, stream: u64) -> Result<Trial, Error> {
                     ("wheel_z", share * along.z),
                 ]);
             }
+            if let body::Acting::Magnet(size) = case.acting {
+                errors.push(("magnet", size));
+            }
             let mirror = estimate.mirror.as_ref().map(|mirror| mirror.principal_moments());
             let trace: f64 = case.moments.iter().sum();
             let is_mirror = mirror.zip(estimate.sigma_mirror).is_some_and(|(mirror, sigmas)| {

@@ -115,6 +115,11 @@ impl Facts {
         Facts { rank: None, known: Vec::new(), open: vec![open.into()] }
     }
 
+    pub(super) fn contradicted() -> Self {
+        let open = "the tensor: momenta of wheels and torques contradict the rates";
+        Facts { rank: None, known: Vec::new(), open: vec![open.into()] }
+    }
+
     pub(super) fn report(&self, record: &Record, spans: &Spans, format: Format) -> String {
         match format {
             Format::Json => pretty(&json!({
@@ -142,7 +147,11 @@ impl Facts {
                 format!(
                     "{}Known:\n{}Undetermined:\n{}{}",
                     counted.unwrap_or_default(),
-                    if self.known.is_empty() { "  nothing\n".into() } else { list(&self.known) },
+                    match (self.known.is_empty(), self.rank) {
+                        (true, None | Some(0)) => "  nothing\n".into(),
+                        (true, _) => "  no axis and no ratio, only combinations of them\n".into(),
+                        _ => list(&self.known),
+                    },
                     list(&self.open),
                     spans.lines().iter().map(|line| format!("{line}\n")).collect::<String>()
                 )
@@ -191,9 +200,9 @@ pub(super) fn digits(sigma: f64) -> usize {
 /// Half widths of 95 % intervals in standard deviations.
 pub(super) const SURE: f64 = 1.959_963_984_540_054;
 
-/// The systematic lines of constant errors of the sensor, which every sensor has; most bodies have no wheel.
+/// The systematic lines of constant errors of the sensor, which every sensor has; most bodies have neither wheel nor magnet.
 pub(super) fn sensor_lines(e: &Estimate) -> impl Iterator<Item = &Systematic> {
-    e.systematic.iter().filter(|line| !line.name.starts_with("wheel") && line.name != "walk")
+    e.systematic.iter().filter(|line| line.is_of_sensor() && line.name != "walk")
 }
 
 /// What an error of each of the sizes of the systematic lines would make of the principal moments together, shares of

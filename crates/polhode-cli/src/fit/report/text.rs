@@ -174,7 +174,7 @@ fn sensor(e: &Estimate) -> Vec<String> {
     if !e.systematic.is_empty() {
         lines.extend([
             String::new(),
-            "change of (I1, I2, I3) with an error of the sensor, or a wheel in the body:".into(),
+            "change of (I1, I2, I3) with an error of the sensor, or a wheel or magnet inside:".into(),
         ]);
         for line in &e.systematic {
             let [a, b, c] = line.principal;
