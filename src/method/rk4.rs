@@ -64,8 +64,13 @@ impl<S: Real> Method<S> for Rk4 {
 impl<S: Real, F: Field<S>> Map<S> for Rk4Map<S, F> {
     #[inline(always)]
     fn apply(&mut self, at: Time, point: &mut Point<S>) {
-        let times = if F::ACTS { [at, at.later(self.later[0]), at.later(self.later[1])] } else { [at; 3] };
-        let mut x = self.step.step(times, &self.field, &self.scaled, point.phase());
+        let x = point.phase();
+        let mut x = if F::ACTS {
+            let [middle, end] = self.later.map(|duration| at.later(duration));
+            self.step.forced([at, middle, end], &self.field, &self.scaled, x)
+        } else {
+            self.step.free(x)
+        };
         if self.normalized {
             x.attitude = x.attitude.normalized();
         }
@@ -97,19 +102,11 @@ pub(in crate::method) const RK4_CONSTANTS: usize = 9;
 
 /// What takes forces into these variables.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::method) struct Scaled<S> {
+struct Scaled<S> {
     /// p' over the torque, h²/8 I⁻¹.
     torque: Vec3<S>,
     /// Angular velocity over p, 4/h.
     rate: S,
-}
-
-impl<S: Real> Scaled<S> {
-    /// For no forces.
-    #[inline(always)]
-    pub(in crate::method) fn none() -> Self {
-        Scaled { torque: Vec3::zero(), rate: S::of(0.0) }
-    }
 }
 
 impl<S: Real> Rk4Step<S> {
@@ -126,9 +123,54 @@ impl<S: Real> Rk4Step<S> {
         Rk4Step { constants }
     }
 
+    /// p of the momentum `m`.
+    #[inline(always)]
+    pub(in crate::method) fn scaled(&self, m: Vec3<S>) -> Vec3<S> {
+        let [a, b, c, ..] = self.constants;
+        m.times(Vec3([a, b, c]))
+    }
+
+    /// `D_i p_j r_k`.
+    #[inline(always)]
+    fn gyroscopic(&self, p: Vec3<S>, r: Vec3<S>) -> Vec3<S> {
+        let [_, _, _, d, e, f, ..] = self.constants;
+        Vec3([d, e, f]).times(Vec3([p[1] * r[2], p[2] * r[0], p[0] * r[1]]))
+    }
+
+    /// `x` moved by `q`, and by a third of `p`.
+    #[inline(always)]
+    pub(in crate::method) fn moved(&self, x: Phase<S>, q: Quat<S>, p: Vec3<S>) -> Phase<S> {
+        let [.., u, v, w] = self.constants;
+        Phase { attitude: x.attitude + q, momentum_body: x.momentum_body + p.times(Vec3([u, v, w])) }
+    }
+
+    /// A step without torque. p does not depend on q then, and q' is linear in it: the stages of q are q times quaternions that are
+    /// made of those of p. So a step waits for no more of the step before than its momentum.
+    #[inline(always)]
+    pub(in crate::method) fn free(&self, x: Phase<S>) -> Phase<S> {
+        let p = self.scaled(x.momentum_body);
+        let l1 = self.gyroscopic(p, p);
+        let p2 = p + l1;
+        let l2 = self.gyroscopic(p2, p2);
+        let p3 = p + l2;
+        let twice_p3 = p3 + p3;
+        let twice_l3 = self.gyroscopic(twice_p3, p3);
+        let p4 = p + twice_l3;
+        let l4 = self.gyroscopic(p4, p4);
+        let l = (l1 + l4) + (twice_l3 + (l2 + l2));
+
+        let and_one = |k: Quat<S>| Quat { w: S::of(1.0) + k.w, v: k.v };
+        let k2 = Quat { w: -p.dot(p2), v: p2 + p.cross(p2) };
+        let twice_k3 = by(and_one(k2), twice_p3);
+        let k4 = by(and_one(twice_k3), p4);
+        let k = (k4 + twice_k3) + (k2 + k2);
+        let k = Quat { w: k.w, v: k.v + p } * third::<S>();
+        self.moved(x, x.attitude * k, l)
+    }
+
     /// A step that begins at the first of the times, has its middle at the second and ends at the third.
     #[inline(always)]
-    pub(in crate::method) fn step<F: Field<S>>(
+    fn forced<F: Field<S>>(
         &self,
         [begin, middle, end]: [Time; 3],
         field: &F,
@@ -142,22 +184,7 @@ impl<S: Real> Rk4Step<S> {
         let (k3, l3) = (k3 + k3, l3 + l3);
         let (k4, l4) = self.rate(end, field, scaled, q + k3, p + l3);
         let (k, l) = ((k1 + k4) + (k3 + (k2 + k2)), (l1 + l4) + (l3 + (l2 + l2)));
-        self.moved(x, k, l)
-    }
-
-    /// `x` at the end of a step, by the sums of the rates.
-    #[inline(always)]
-    pub(in crate::method) fn moved(&self, x: Phase<S>, k: Quat<S>, l: Vec3<S>) -> Phase<S> {
-        let [.., u, v, w] = self.constants;
-        let third = S::of(1.0) / S::of(3.0);
-        Phase { attitude: x.attitude + k * third, momentum_body: x.momentum_body + l.times(Vec3([u, v, w])) }
-    }
-
-    /// p of the momentum `m`.
-    #[inline(always)]
-    pub(in crate::method) fn scaled(&self, m: Vec3<S>) -> Vec3<S> {
-        let [a, b, c, ..] = self.constants;
-        m.times(Vec3([a, b, c]))
+        self.moved(x, k * third::<S>(), l)
     }
 
     /// q' and p'.
@@ -171,18 +198,23 @@ impl<S: Real> Rk4Step<S> {
         p: Vec3<S>,
     ) -> (Quat<S>, Vec3<S>) {
         let (attitude, turned) = self.free_rate(q, p);
-        if F::ACTS {
-            (attitude, turned + field.torque(at, q, p * scaled.rate).times(scaled.torque))
-        } else {
-            (attitude, turned)
-        }
+        (attitude, turned + field.torque(at, q, p * scaled.rate).times(scaled.torque))
     }
 
     /// The same without forces.
     #[inline(always)]
     pub(in crate::method) fn free_rate(&self, q: Quat<S>, p: Vec3<S>) -> (Quat<S>, Vec3<S>) {
-        let [_, _, _, d, e, f, ..] = self.constants;
-        let turned = Vec3([d, e, f]).times(Vec3([p[1] * p[2], p[2] * p[0], p[0] * p[1]]));
-        (Quat { w: -q.v.dot(p), v: p * q.w + q.v.cross(p) }, turned)
+        (by(q, p), self.gyroscopic(p, p))
     }
+}
+
+/// `q ∘ (0, p)`.
+#[inline(always)]
+fn by<S: Real>(q: Quat<S>, p: Vec3<S>) -> Quat<S> {
+    Quat { w: -q.v.dot(p), v: p * q.w + q.v.cross(p) }
+}
+
+#[inline(always)]
+pub(in crate::method) fn third<S: Real>() -> S {
+    S::of(1.0) / S::of(3.0)
 }

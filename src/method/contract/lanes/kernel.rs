@@ -12,9 +12,9 @@ use multiversion::multiversion;
 use super::acting::{Acting, FORCES, Torques, vector};
 use super::block::{Block, PARTS};
 use super::stages::Stages;
-use crate::body::{Free, Place, Point, Time};
+use crate::body::{Place, Point};
 use crate::flow::{quarter_squared, quarters, turn_by};
-use crate::method::rk4::{RK4_CONSTANTS, Rk4Step, Scaled};
+use crate::method::rk4::{RK4_CONSTANTS, Rk4Step};
 use crate::num::trig::{
     SMALL, sin_cos_moderate, sin_versine, sin_versine_moderate, sin_versine_small, sinc_cos_small,
 };
@@ -261,9 +261,8 @@ fn kick(
 
 #[inline(always)]
 fn free_rk4<const NORMALIZED: bool>(points: &mut [Lane; PARTS], constants: &[Lane; RK4_CONSTANTS]) {
-    let (times, scaled) = ([Time::from_seconds(0.0); 3], Scaled::none());
     each!(points, |n, x| {
-        let mut moved = rk4_of(constants, n).step(times, &Free, &scaled, x.phase());
+        let mut moved = rk4_of(constants, n).free(x.phase());
         if NORMALIZED {
             moved.attitude = moved.attitude.normalized();
         }

@@ -4,7 +4,7 @@ use super::acting::{Acting, FORCES, Torques, quaternion, set_quaternion, set_vec
 use super::block::PARTS;
 use super::kernel::rk4_of;
 use crate::body::{Clock, Phase};
-use crate::method::rk4::RK4_CONSTANTS;
+use crate::method::rk4::{RK4_CONSTANTS, third};
 use crate::num::{Dd, LANES, Lane};
 use crate::rotation::Vec3;
 
@@ -115,7 +115,7 @@ impl Stages {
         for n in 0..LANES {
             let k = (first.at(n) + rates_at!(n)) + middle.at(n);
             let x = Phase { attitude: quaternion(q, n), momentum_body: vector(m, n) };
-            let x = rk4_of(rk4, n).moved(x, k.attitude, k.momentum_body);
+            let x = rk4_of(rk4, n).moved(x, k.attitude * third::<f64>(), k.momentum_body);
             set_quaternion(q, n, x.attitude);
             set_vector(m, n, x.momentum_body);
         }
