@@ -84,14 +84,14 @@ impl<S: Real> Point<S> {
         self.steps
     }
 
-    /// Counts a step.
+    /// Counts `n` steps.
     #[inline]
-    pub(crate) fn count_step(&mut self) {
-        self.steps += 1;
+    pub(crate) fn count_steps(&mut self, n: u64) {
+        self.steps += n;
     }
 
     /// `m += delta`.
-    #[inline]
+    #[inline(always)]
     pub fn add_momentum(&mut self, delta: Vec3<S>) {
         for k in 0..3 {
             self.add_component(k, delta[k]);
@@ -99,7 +99,7 @@ impl<S: Real> Point<S> {
     }
 
     /// `m[axis] += delta`.
-    #[inline]
+    #[inline(always)]
     pub fn add_component(&mut self, axis: usize, delta: S) {
         add_carried(&mut self.momentum_body[axis], &mut self.carried.momentum_body[axis], delta);
     }
@@ -141,7 +141,7 @@ impl<S: Real> Point<S> {
     }
 
     /// `q += delta`.
-    #[inline]
+    #[inline(always)]
     pub fn add_attitude(&mut self, delta: Quat<S>) {
         add_carried(&mut self.attitude.w, &mut self.carried.attitude.w, delta.w);
         // no loop, as in `renormalize`
@@ -165,7 +165,13 @@ impl<S: Real> Point<S> {
     /// Brings |q| back to 1 in every eighth step.
     #[inline]
     pub fn renormalize_at_times(&mut self) {
-        if self.steps % RENORMALIZE_EVERY == RENORMALIZE_EVERY - 1 {
+        self.renormalize_every(RENORMALIZE_EVERY);
+    }
+
+    /// The same in the last of every `count` steps.
+    #[inline]
+    pub(crate) fn renormalize_every(&mut self, count: u64) {
+        if self.steps % count == count - 1 {
             self.renormalize();
         }
     }

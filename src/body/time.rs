@@ -1,9 +1,9 @@
 //! Time without rounding: the start, whole steps, and what has gone by within a step.
 
-use crate::num::{Dd, Precise, Real};
+use crate::num::{Dd, Precise, Real, trig};
 
-/// Beyond it, 2⁵², every double is an integer.
-const WHOLE: f64 = 4_503_599_627_370_496.0;
+/// Below it, 2⁵¹, a double is rounded to an integer by a sum.
+const WHOLE: f64 = 2_251_799_813_685_248.0;
 
 /// When a run starts and how long its steps are: step n begins at `start + n · step`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +30,8 @@ impl Clock {
     /// Time since the start after `steps` steps, s, exact: a sum `t += h` would lose a second in a long enough run.
     pub fn elapsed(&self, steps: u64) -> Dd {
         let (high, low) = (steps >> 32, steps & 0xffff_ffff);
-        Dd::product(high as f64 * 4_294_967_296.0, self.step) + Dd::product(low as f64, self.step)
+        let elapsed = Dd::product(low as f64, self.step);
+        if high == 0 { elapsed } else { Dd::product(high as f64 * 4_294_967_296.0, self.step) + elapsed }
     }
 }
 
@@ -99,7 +100,10 @@ impl Time {
         let angle = self.dd() * rate;
         let turns = angle.hi() * (0.5 * core::f64::consts::FRAC_1_PI);
         // next to half a turn either number of turns will do; beyond the integers of a double only that of double-double
-        let turns = if turns.abs() < WHOLE { Dd::of(turns.round()) } else { (angle / Dd::TAU).round() };
-        angle - Dd::TAU * turns
+        if turns.abs() < WHOLE {
+            angle - Dd::TAU * Dd::of(trig::nearest(turns))
+        } else {
+            angle - Dd::TAU * (angle / Dd::TAU).round()
+        }
     }
 }

@@ -74,32 +74,31 @@ pub(crate) fn turn_about_axis<S: Real>(axis: usize, x: &mut Point<S>, half_rate_
 /// Turns `x` about `AXIS` by the angle `2 · half_rate_time · m_AXIS`, rounding errors carried: the exact flow of the kinetic
 /// energy of one axis (McLachlan, Phys. Rev. Lett. 71 (1993) 3043).
 ///
-/// The momentum turns by `v = 2 sin²` and `w = 2 sin cos` of the *half* angle, both from the same sine: then
-/// `v² + w² − 2v` is a rounding error of random sign, and |m| walks at random instead of drifting. The quaternion
-/// takes the same sine and cosine, so that `q m q*` keeps its direction. The axis is a constant so that the state
-/// stays in registers.
+/// The momentum moves by `2 sin · (cos m_k − sin m_j)` and `−2 sin · (cos m_j + sin m_k)` of the *half* angle. An error of
+/// the sine then turns it by another angle, one of the cosine changes |m| by the fraction sin² of it, and what rounding adds
+/// has no preferred sign: |m| walks at random instead of drifting. The quaternion takes the same sine and cosine, so that
+/// `q m q*` keeps its direction; it needs `1 − cos`, which is not rounded as a number next to 1 is, so that |q| hardly
+/// wanders where the angle is small. The axis is a constant so that the state stays in registers.
 #[inline]
 pub(crate) fn turn_about<const AXIS: usize, S: Real>(x: &mut Point<S>, half_rate_time: S) {
-    turn_by::<AXIS, S>(x, (x.momentum_body[AXIS] * half_rate_time).sin_cos());
+    turn_by::<AXIS, S>(x, (x.momentum_body[AXIS] * half_rate_time).sin_versine());
 }
 
 /// The same by an angle of which half is at most [`SMALL`](crate::num::trig::SMALL).
 #[inline(always)]
 pub(crate) fn turn_a_little_about<const AXIS: usize, S: Real>(x: &mut Point<S>, half_rate_time: S) {
-    turn_by::<AXIS, S>(x, (x.momentum_body[AXIS] * half_rate_time).sin_cos_small());
+    turn_by::<AXIS, S>(x, (x.momentum_body[AXIS] * half_rate_time).sin_versine_small());
 }
 
-/// The same by sine and cosine of half the angle.
+/// The same by the sine of half the angle, and one less its cosine.
 #[inline(always)]
-pub(crate) fn turn_by<const AXIS: usize, S: Real>(x: &mut Point<S>, (s, c): (S, S)) {
+pub(crate) fn turn_by<const AXIS: usize, S: Real>(x: &mut Point<S>, (s, less): (S, S)) {
     let (j, k) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
-    let m = x.momentum_body;
-    let twice = s + s;
-    let (v, w) = (twice * s, twice * c);
-    x.add_component(j, w * m[k] - v * m[j]);
-    x.add_component(k, -(w * m[j] + v * m[k]));
+    let (m, twice, c) = (x.momentum_body, s + s, S::of(1.0) - less);
+    x.add_component(j, twice * (c * m[k] - s * m[j]));
+    x.add_component(k, -(twice * (c * m[j] + s * m[k])));
     // q ∘ (c, s e_i) − q, without the products by zero
-    let (q, less) = (x.attitude, S::of(1.0) - c);
+    let q = x.attitude;
     let mut change = Quat::new(-(s * q.v[AXIS] + less * q.w), Vec3::zero());
     change.v[AXIS] = s * q.w - less * q.v[AXIS];
     change.v[j] = s * q.v[k] - less * q.v[j];

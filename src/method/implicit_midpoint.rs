@@ -84,19 +84,17 @@ impl<S: Real> Method<S> for ImplicitMidpoint {
 impl<S: Real, F: Field<S>> Map<S> for ImplicitMidpointMap<S, F> {
     #[inline]
     fn apply(&mut self, at: Time, x: &mut Point<S>) {
-        let m = x.momentum_body;
-        let (delta, residual) = if F::ACTS {
-            self.forced(at, x)
-        } else {
-            let equation =
-                Quadratic::<S, false> { m, half: self.inverse_moments, gyroscopic: &self.half_gyroscopic };
-            let (middle, residual) = equation.solution();
-            (self.gyroscopic.at(middle), residual)
-        };
-        self.worst_residual = self.worst_residual.max(residual);
-        let c = (m + delta * self.half).times(self.inverse_moments) * (self.h * self.half);
-        x.add_momentum(delta);
-        cayley_turn(x, c);
+        if F::ACTS {
+            let (delta, residual) = self.forced(at, x);
+            self.worst_residual = self.worst_residual.max(residual);
+            return self.step(x, delta);
+        }
+        let (middle, settled) = self.equation(x.momentum_body).near();
+        if !settled {
+            let Vec3([a, b, c]) = middle;
+            return self.step_from(x, a, b, c);
+        }
+        self.step(x, self.gyroscopic.at(middle));
     }
 
     fn worst_residual(&self) -> f64 {
@@ -105,6 +103,28 @@ impl<S: Real, F: Field<S>> Map<S> for ImplicitMidpointMap<S, F> {
 }
 
 impl<S: Real, F: Field<S>> ImplicitMidpointMap<S, F> {
+    #[inline(always)]
+    fn equation(&self, m: Vec3<S>) -> Quadratic<'_, S, false> {
+        Quadratic { m, half: self.inverse_moments, gyroscopic: &self.half_gyroscopic }
+    }
+
+    /// The step that changes m by `delta`.
+    #[inline(always)]
+    fn step(&self, x: &mut Point<S>, delta: Vec3<S>) {
+        let middle = x.momentum_body + delta * self.half;
+        x.add_momentum(delta);
+        cayley_turn(x, middle.times(self.inverse_moments) * (self.h * self.half));
+    }
+
+    /// The free step from a guess of m̄ that is not good enough, number by number: they stay in registers.
+    #[cold]
+    #[inline(never)]
+    fn step_from(&mut self, x: &mut Point<S>, a: S, b: S, c: S) {
+        let (middle, residual) = self.equation(x.momentum_body).iterated(Vec3([a, b, c]));
+        self.worst_residual = self.worst_residual.max(residual);
+        self.step(x, self.gyroscopic.at(middle));
+    }
+
     /// The change of m with torque, and the residual; apart, so that the free step stays in registers.
     #[inline(never)]
     fn forced(&self, at: Time, x: &Point<S>) -> (Vec3<S>, f64) {

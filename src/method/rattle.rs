@@ -93,6 +93,29 @@ impl<S: Real> DmvMap<S> {
         self.gyroscopic = Gyroscopic::new(rotor, half * s);
     }
 
+    #[inline(always)]
+    fn equation(&self, m: Vec3<S>) -> Quadratic<'_, S, true> {
+        Quadratic { m, half: self.half, gyroscopic: &self.gyroscopic }
+    }
+
+    /// The step with the solution u.
+    #[inline(always)]
+    fn step(&self, x: &mut Point<S>, u: Vec3<S>) {
+        let c = u.times(self.half);
+        let alpha = S::of(1.0) + c.norm_squared();
+        x.add_momentum(self.gyroscopic.at(u) * (S::of(2.0) / alpha));
+        cayley_turn(x, c);
+    }
+
+    /// The step from a guess that is not good enough, number by number: they stay in registers.
+    #[cold]
+    #[inline(never)]
+    fn step_from(&mut self, x: &mut Point<S>, a: S, b: S, c: S) {
+        let (u, residual) = self.equation(x.momentum_body).iterated(Vec3([a, b, c]));
+        self.worst_residual = self.worst_residual.max(residual);
+        self.step(x, u);
+    }
+
     /// The same from the map for the moments themselves and d h/2.
     #[inline]
     pub(in crate::method) fn modify(&mut self, plain: &DmvMap<S>, s: S, half_d: S) {
@@ -104,14 +127,12 @@ impl<S: Real> DmvMap<S> {
 impl<S: Real> Map<S> for DmvMap<S> {
     #[inline]
     fn apply(&mut self, _: Time, x: &mut Point<S>) {
-        let m = x.momentum_body;
-        let equation = Quadratic::<S, true> { m, half: self.half, gyroscopic: &self.gyroscopic };
-        let (u, residual) = equation.solution();
-        self.worst_residual = self.worst_residual.max(residual);
-        let c = u.times(self.half);
-        let alpha = S::of(1.0) + c.norm_squared();
-        x.add_momentum(self.gyroscopic.at(u) * (S::of(2.0) / alpha));
-        cayley_turn(x, c);
+        let (u, settled) = self.equation(x.momentum_body).near();
+        if !settled {
+            let Vec3([a, b, c]) = u;
+            return self.step_from(x, a, b, c);
+        }
+        self.step(x, u);
     }
 
     fn worst_residual(&self) -> f64 {

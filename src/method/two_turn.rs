@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use super::schemes::{Pairs, STRANG, Scheme, Stages};
 use super::{Cost, Energy, FreePart, Map, Method, SideBySide, Symmetric, WheelSplit};
-use crate::body::{Field, Point, Rotor, Time};
+use crate::body::{Clock, Field, Point, Rotor, Time};
 use crate::flow::{Casimir, Flow};
 use crate::method::solve::modified_energy::{ModifiedEnergy, Orbit, PhaseErrorRates, of_least_error};
 use crate::method::solve::turns::Turns;
@@ -254,6 +254,11 @@ impl<S: Precise> Map<S> for TwoTurnMap<S> {
     #[inline]
     fn advance(&mut self, _: Time, x: &mut Point<S>) {
         self.turns.advance(x);
+    }
+
+    #[inline]
+    fn advance_by(&mut self, n: u64, _: &Clock, x: &mut Point<S>) {
+        self.turns.advance_by(n, x);
     }
 
     fn side_by_side(&self) -> Option<SideBySide<S>> {

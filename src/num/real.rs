@@ -58,10 +58,16 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle in radians, the same bits on every CPU.
     fn sin_cos(self) -> (Self, Self);
+    /// `sin x` and `1 − cos x` of an angle in radians; of `f64` the second without cancellation.
+    #[inline]
+    fn sin_versine(self) -> (Self, Self) {
+        let (s, c) = self.sin_cos();
+        (s, Self::of(1.0) - c)
+    }
     /// The same of an angle of at most [`SMALL`](trig::SMALL), where `f64` needs fewer operations.
     #[inline]
-    fn sin_cos_small(self) -> (Self, Self) {
-        self.sin_cos()
+    fn sin_versine_small(self) -> (Self, Self) {
+        self.sin_versine()
     }
     /// `sin x / x` and `cos x` of the angle x, rad, whose square is `self`; no root where x is at most
     /// [`SMALL`](trig::SMALL) and `f64` needs none.
@@ -138,8 +144,12 @@ impl Real for f64 {
         trig::sin_cos(self)
     }
     #[inline]
-    fn sin_cos_small(self) -> (Self, Self) {
-        trig::sin_cos_small(self)
+    fn sin_versine(self) -> (Self, Self) {
+        trig::sin_versine(self)
+    }
+    #[inline(always)]
+    fn sin_versine_small(self) -> (Self, Self) {
+        trig::sin_versine_small(self)
     }
     #[inline]
     fn sinc_cos_of_root(self) -> (Self, Self) {

@@ -65,7 +65,7 @@ impl<S: Real> Compensated<S> {
 /// Adds `delta` to `sum`, carrying in `carry` what the rounded sum could not hold (Kahan).
 ///
 /// Cheaper than [`Compensated`], and right where the terms are small against the sum, as increments of a state are.
-#[inline]
+#[inline(always)]
 pub fn add_carried<S: Real>(sum: &mut S, carry: &mut S, delta: S) {
     let delta = delta + *carry;
     let new = *sum + delta;

@@ -42,24 +42,40 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
     if x.abs() <= FRAC_PI_4 { kernel::<false>(x, 0.0) } else { reduced(x) }
 }
 
-/// Sine and cosine of `x` radians, |x| ≤ π/4: as [`sin_cos`], without a branch.
-#[inline(always)]
-pub(crate) fn sin_cos_moderate(x: f64) -> (f64, f64) {
-    kernel::<false>(x, 0.0)
+/// `sin x` and `1 − cos x` of `x` radians, the second without cancellation; NaN unless `x` is finite.
+#[inline]
+#[must_use]
+pub fn sin_versine(x: f64) -> (f64, f64) {
+    if x.abs() <= FRAC_PI_4 {
+        return sin_versine_moderate(x);
+    }
+    let (s, c) = reduced(x);
+    (s, 1.0 - c)
 }
 
-/// The largest angle of [`sin_cos_small`], rad.
+/// The same of |x| ≤ π/4, without a branch.
+#[inline(always)]
+#[must_use]
+pub(crate) fn sin_versine_moderate(x: f64) -> (f64, f64) {
+    let z = x * x;
+    let z2 = z * z;
+    (x + x * z * polynomial(z, z2, SIN), 0.5 * z - z2 * polynomial(z, z2, COS))
+}
+
+/// The largest angle of [`sin_versine_small`], rad.
 pub const SMALL: f64 = 0.03125;
 
-/// Sine and cosine of `x` radians, |x| ≤ [`SMALL`]: Taylor polynomials, whose errors in sin x / x and cos x are below 2⁻⁵⁸.
-#[inline]
-pub fn sin_cos_small(x: f64) -> (f64, f64) {
+/// `sin x` and `1 − cos x` of `x` radians, |x| ≤ [`SMALL`]: Taylor polynomials, whose errors in sin x / x and cos x are below
+/// 2⁻⁵⁸.
+#[inline(always)]
+#[must_use]
+pub fn sin_versine_small(x: f64) -> (f64, f64) {
     let z = x * x;
-    (x + x * z * sine_small(z), cos_small(z))
+    (x + x * z * sine_small(z), 0.5 * z - z * z * cosine_small(z))
 }
 
 /// `sin x / x` and `cos x` of the angle x with the square `z`, x ≤ [`SMALL`], by the same polynomials.
-#[inline]
+#[inline(always)]
 pub fn sinc_cos_small(z: f64) -> (f64, f64) {
     (1.0 + z * sine_small(z), cos_small(z))
 }
@@ -67,15 +83,20 @@ pub fn sinc_cos_small(z: f64) -> (f64, f64) {
 /// `(sin x / x − 1)/z`, z = x².
 #[inline(always)]
 fn sine_small(z: f64) -> f64 {
-    -1.0 / 6.0 + z * (1.0 / 120.0 - z * (1.0 / 5040.0))
+    (z * (1.0 / 120.0) - 1.0 / 6.0) - z * z * (1.0 / 5040.0)
 }
 
 #[inline(always)]
 fn cos_small(z: f64) -> f64 {
     let half = 0.5 * z;
     let c = 1.0 - half;
-    let rest = (1.0 - c) - half + z * z * ((1.0 / 24.0 - z * (1.0 / 720.0)) + z * z * (1.0 / 40320.0));
-    c + rest
+    c + ((1.0 - c) - half + z * z * cosine_small(z))
+}
+
+/// `(cos x − 1 + z/2)/z²`, z = x².
+#[inline(always)]
+fn cosine_small(z: f64) -> f64 {
+    (1.0 / 24.0 - z * (1.0 / 720.0)) + z * z * (1.0 / 40320.0)
 }
 
 #[inline(never)]

@@ -42,9 +42,11 @@ impl<S: Real> Vec3<S> {
     }
 
     /// Each component mapped by `f`.
-    #[inline]
-    pub fn map<T>(self, f: impl FnMut(S) -> T) -> Vec3<T> {
-        Vec3(self.0.map(f))
+    #[inline(always)]
+    pub fn map<T>(self, mut f: impl FnMut(S) -> T) -> Vec3<T> {
+        // the map of an array is a call, through memory
+        let [a, b, c] = self.0;
+        Vec3([f(a), f(b), f(c)])
     }
 
     /// The same numbers in another scalar.
@@ -90,7 +92,7 @@ impl<S: Real> Vec3<S> {
     /// The largest |component| as `f64`; NaN if one is NaN.
     #[inline]
     pub fn magnitude(self) -> f64 {
-        let [a, b, c] = self.0.map(S::magnitude);
+        let Vec3([a, b, c]) = self.map(S::magnitude);
         // f64::max would drop a NaN
         if a.is_nan() || b.is_nan() || c.is_nan() { f64::NAN } else { a.max(b).max(c) }
     }

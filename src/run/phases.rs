@@ -114,7 +114,7 @@ impl Run {
             return self.begin(self.phase + 1, self.clock.at(point.steps()), point);
         }
         point = self.divided(point, Dd::from(self.clock.step))?;
-        point.count_step();
+        point.count_steps(1);
         self.begin(self.phases.after(point.steps()), self.clock.at(point.steps()), point)?;
         self.read();
         match self.watch {

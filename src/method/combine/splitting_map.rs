@@ -1,7 +1,7 @@
 //! One step of a splitting: its maps in turn, and what is merged where steps meet.
 
 use super::processor::{Processor, Timed};
-use crate::body::{Point, Time};
+use crate::body::{Clock, Point, Time};
 use crate::method::{Map, SideBySide};
 use crate::num::{Dd, Real};
 
@@ -89,6 +89,17 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
                 merged.apply(at, x);
             }
             _ => self.kernel(at, x),
+        }
+    }
+
+    #[inline]
+    fn advance_by(&mut self, n: u64, clock: &Clock, x: &mut Point<S>) {
+        if let (Ends::OfA, [(a, _)]) = (&self.ends, &mut self.pairs[..]) {
+            return a.map.advance_by(n, clock, x);
+        }
+        for _ in 0..n {
+            self.advance(clock.at(x.steps()), x);
+            x.count_steps(1);
         }
     }
 

@@ -279,7 +279,7 @@ mod tests {
             let start = x.to_dd();
             for _ in 0..1_000_000 {
                 turn.apply(&mut x);
-                x.count_step();
+                x.count_steps(1);
                 x.renormalize_at_times();
             }
             let end = x.to_dd();

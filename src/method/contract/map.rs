@@ -116,6 +116,16 @@ pub trait Map<S: Real>: Send + 'static {
         self.apply(at, x);
     }
 
+    /// `n` steps in that form, which are counted.
+    #[doc(hidden)]
+    #[inline]
+    fn advance_by(&mut self, n: u64, clock: &Clock, x: &mut Point<S>) {
+        for _ in 0..n {
+            self.advance(clock.at(x.steps()), x);
+            x.count_steps(1);
+        }
+    }
+
     /// Takes that form to one with the energy and the momenta of the state, from which it differs by no more than a turn
     /// about the momentum.
     #[inline]
@@ -175,6 +185,9 @@ impl<S: Real> Map<S> for Box<dyn Map<S>> {
     }
     fn advance(&mut self, at: Time, x: &mut Point<S>) {
         (**self).advance(at, x);
+    }
+    fn advance_by(&mut self, n: u64, clock: &Clock, x: &mut Point<S>) {
+        (**self).advance_by(n, clock, x);
     }
     fn close(&mut self, at: Time, x: &mut Point<S>) {
         (**self).close(at, x);
@@ -343,10 +356,7 @@ impl<S: Real, M: Map<S>> Step<S> for Stepper<M> {
     }
 
     fn advance(&mut self, x: &mut Point<S>, n: u64) {
-        for _ in 0..n {
-            self.map.advance(self.clock.at(x.steps()), x);
-            x.count_step();
-        }
+        self.map.advance_by(n, &self.clock, x);
     }
 
     fn reading(&mut self, x: &Point<S>) -> Point<S> {

@@ -6,7 +6,7 @@ pub use axis_order::{AxisOrder, AxisOrderError};
 
 use super::schemes::{STRANG, Scheme, Stages};
 use super::{Cost, Energy, FreePart, Kicks, Map, Method, SideBySide, Splitting, Symmetric, WheelSplit};
-use crate::body::{Field, Point, Rotor, Time};
+use crate::body::{Clock, Field, Point, Rotor, Time};
 use crate::method::solve::turns::Turns;
 use crate::num::{Dd, Precise};
 
@@ -128,6 +128,11 @@ impl<S: Precise> Map<S> for AxisSplitMap<S> {
     #[inline]
     fn advance(&mut self, _: Time, x: &mut Point<S>) {
         self.turns.advance(x);
+    }
+
+    #[inline]
+    fn advance_by(&mut self, n: u64, _: &Clock, x: &mut Point<S>) {
+        self.turns.advance_by(n, x);
     }
 
     fn side_by_side(&self) -> Option<SideBySide<S>> {

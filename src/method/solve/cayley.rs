@@ -5,7 +5,7 @@ use crate::num::Real;
 use crate::rotation::{Quat, Vec3};
 
 /// `q ← q ∘ (1, c)/√(1 + |c|²)`, rounding carried: `p₀ − 1 = −|c|²/(α + √α)` has no cancellation.
-#[inline]
+#[inline(always)]
 pub(in crate::method) fn cayley_turn<S: Real>(x: &mut Point<S>, c: Vec3<S>) {
     let squared = c.norm_squared();
     let alpha = S::of(1.0) + squared;

@@ -2,7 +2,7 @@
 
 use core::f64::consts::FRAC_PI_4;
 
-use crate::body::Point;
+use crate::body::{Point, RENORMALIZE_EVERY};
 use crate::flow::{turn_a_little_about, turn_about, turn_about_axis};
 use crate::method::SideBySide;
 use crate::method::combine::lengths;
@@ -10,6 +10,9 @@ use crate::method::contract::lanes::{Kernel, Width};
 use crate::method::schemes::{Part, Scheme};
 use crate::num::trig::SMALL;
 use crate::num::{Dd, Precise, Real};
+
+/// Steps between renormalisations where all turns are small: each changes |q|² by some hundredths of a rounding error of 1 at most.
+pub(in crate::method) const RENORMALIZE_SMALL_EVERY: u64 = 64;
 
 /// A step of turns that reads the same from both ends.
 ///
@@ -79,8 +82,8 @@ impl<S: Precise> Turns<S> {
     /// Takes all turns of a step.
     #[inline]
     pub(in crate::method) fn apply(&self, x: &mut Point<S>) {
-        turn_about_axis(self.outer(), x, self.first);
-        self.axes.turn::<false, S>(&self.whole, x);
+        turn_about_axis(self.axes.outer(), x, self.first);
+        self.axes.in_turn(&self.whole, x);
         x.renormalize_at_times();
     }
 
@@ -90,22 +93,33 @@ impl<S: Precise> Turns<S> {
         // |m| walks by rounding
         self.reach = 1.01 * largest * x.momentum_body.norm().magnitude();
         self.small = self.reach <= SMALL;
-        turn_about_axis(self.outer(), x, self.first);
+        turn_about_axis(self.axes.outer(), x, self.first);
     }
 
-    #[inline]
     pub(in crate::method) fn advance(&self, x: &mut Point<S>) {
-        if self.small {
-            self.axes.turn::<true, S>(&self.cycle, x);
-        } else {
-            self.axes.turn::<false, S>(&self.cycle, x);
+        self.axes.turn(&self.cycle, self.small, 1, x);
+        x.renormalize_every(self.renormalize_every());
+    }
+
+    /// `n` steps, which are counted.
+    pub(in crate::method) fn advance_by(&self, n: u64, x: &mut Point<S>) {
+        let (every, end) = (self.renormalize_every(), x.steps() + n);
+        while x.steps() < end {
+            let steps = (end - x.steps()).min(every - x.steps() % every);
+            self.axes.turn(&self.cycle, self.small, steps, x);
+            x.count_steps(steps - 1);
+            x.renormalize_every(every);
+            x.count_steps(1);
         }
-        x.renormalize_at_times();
+    }
+
+    fn renormalize_every(&self) -> u64 {
+        if self.small { RENORMALIZE_SMALL_EVERY } else { RENORMALIZE_EVERY }
     }
 
     #[inline]
     pub(in crate::method) fn close(&self, x: &mut Point<S>) {
-        turn_about_axis(self.outer(), x, -self.first);
+        turn_about_axis(self.axes.outer(), x, -self.first);
     }
 
     /// The steps of an opened motion side by side with others; `None` where a turn goes so far that its angle is reduced.
@@ -117,61 +131,106 @@ impl<S: Precise> Turns<S> {
         } else {
             return None;
         };
-        let axes: &[usize] = match &self.axes {
-            Axes::Two([outer, inner]) => &[*inner, *outer],
-            Axes::Three([outer, middle, inner]) => &[*middle, *inner, *middle, *outer],
-        };
-        let axes = axes.iter().copied().cycle().take(self.cycle.len()).collect();
+        let axes = self.axes.order().iter().copied().cycle().take(self.cycle.len()).collect();
         Some(SideBySide { kernel: Kernel::Turns(axes, width), constants: self.cycle.clone() })
-    }
-
-    fn outer(&self) -> usize {
-        match self.axes {
-            Axes::Two([outer, _]) | Axes::Three([outer, ..]) => outer,
-        }
     }
 }
 
 impl Axes {
-    /// Takes all of `turns`. The axes are constants inside, so that the state stays in registers.
-    #[inline]
-    fn turn<const SMALL: bool, S: Real>(self, turns: &[S], x: &mut Point<S>) {
+    fn outer(&self) -> usize {
         match self {
-            Axes::Two([0, 1]) => two::<0, 1, SMALL, S>(turns, x),
-            Axes::Two([0, _]) => two::<0, 2, SMALL, S>(turns, x),
-            Axes::Two([1, 0]) => two::<1, 0, SMALL, S>(turns, x),
-            Axes::Two([1, _]) => two::<1, 2, SMALL, S>(turns, x),
-            Axes::Two([_, 0]) => two::<2, 0, SMALL, S>(turns, x),
-            Axes::Two(_) => two::<2, 1, SMALL, S>(turns, x),
-            Axes::Three([0, 1, _]) => three::<0, 1, 2, SMALL, S>(turns, x),
-            Axes::Three([0, ..]) => three::<0, 2, 1, SMALL, S>(turns, x),
-            Axes::Three([1, 0, _]) => three::<1, 0, 2, SMALL, S>(turns, x),
-            Axes::Three([1, ..]) => three::<1, 2, 0, SMALL, S>(turns, x),
-            Axes::Three([_, 0, _]) => three::<2, 0, 1, SMALL, S>(turns, x),
-            Axes::Three(_) => three::<2, 1, 0, SMALL, S>(turns, x),
+            Axes::Two([outer, _]) | Axes::Three([outer, ..]) => *outer,
+        }
+    }
+
+    /// Of the turns of a step, the first of all excepted, over and over again.
+    fn order(&self) -> &'static [usize] {
+        match self {
+            Axes::Two([0, 1]) => &[1, 0],
+            Axes::Two([0, _]) => &[2, 0],
+            Axes::Two([1, 0]) => &[0, 1],
+            Axes::Two([1, _]) => &[2, 1],
+            Axes::Two([_, 0]) => &[0, 2],
+            Axes::Two(_) => &[1, 2],
+            Axes::Three([0, 1, _]) => &[1, 2, 1, 0],
+            Axes::Three([0, ..]) => &[2, 1, 2, 0],
+            Axes::Three([1, 0, _]) => &[0, 2, 0, 1],
+            Axes::Three([1, ..]) => &[2, 0, 2, 1],
+            Axes::Three([_, 0, _]) => &[0, 1, 0, 2],
+            Axes::Three(_) => &[1, 0, 1, 2],
+        }
+    }
+
+    /// Takes all of `turns`.
+    #[inline]
+    fn in_turn<S: Real>(&self, turns: &[S], x: &mut Point<S>) {
+        for (axis, turn) in self.order().iter().cycle().zip(turns) {
+            turn_about_axis(*axis, x, *turn);
+        }
+    }
+
+    /// Takes all of `turns`, `n` times, `small` or not.
+    fn turn<S: Real>(&self, turns: &[S], small: bool, n: u64, x: &mut Point<S>) {
+        // many times the code would gain nothing where each operation is a dozen
+        if const { S::ROUNDOFF < f64::ROUNDOFF } {
+            (0..n).for_each(|_| self.in_turn(turns, x));
+        } else if small {
+            self.turn_apart::<true, S>(turns, n, x);
+        } else {
+            self.turn_apart::<false, S>(turns, n, x);
+        }
+    }
+
+    /// The same, for each order of the axes apart: they are constants inside, and the point is one's own, so that it stays in registers.
+    #[inline]
+    fn turn_apart<const SMALL: bool, S: Real>(&self, turns: &[S], n: u64, x: &mut Point<S>) {
+        match self {
+            Axes::Two([0, 1]) => two::<0, 1, SMALL, S>(turns, n, x),
+            Axes::Two([0, _]) => two::<0, 2, SMALL, S>(turns, n, x),
+            Axes::Two([1, 0]) => two::<1, 0, SMALL, S>(turns, n, x),
+            Axes::Two([1, _]) => two::<1, 2, SMALL, S>(turns, n, x),
+            Axes::Two([_, 0]) => two::<2, 0, SMALL, S>(turns, n, x),
+            Axes::Two(_) => two::<2, 1, SMALL, S>(turns, n, x),
+            Axes::Three([0, 1, _]) => three::<0, 1, 2, SMALL, S>(turns, n, x),
+            Axes::Three([0, ..]) => three::<0, 2, 1, SMALL, S>(turns, n, x),
+            Axes::Three([1, 0, _]) => three::<1, 0, 2, SMALL, S>(turns, n, x),
+            Axes::Three([1, ..]) => three::<1, 2, 0, SMALL, S>(turns, n, x),
+            Axes::Three([_, 0, _]) => three::<2, 0, 1, SMALL, S>(turns, n, x),
+            Axes::Three(_) => three::<2, 1, 0, SMALL, S>(turns, n, x),
         }
     }
 }
 
-#[inline(always)]
-fn two<const OUTER: usize, const INNER: usize, const SMALL: bool, S: Real>(turns: &[S], x: &mut Point<S>) {
-    for &[inner, outer] in turns.as_chunks().0 {
-        turn::<INNER, SMALL, S>(x, inner);
-        turn::<OUTER, SMALL, S>(x, outer);
-    }
-}
-
-#[inline(always)]
-fn three<const OUTER: usize, const MIDDLE: usize, const INNER: usize, const SMALL: bool, S: Real>(
+fn two<const OUTER: usize, const INNER: usize, const SMALL: bool, S: Real>(
     turns: &[S],
+    n: u64,
     x: &mut Point<S>,
 ) {
-    for &[before, inner, behind, outer] in turns.as_chunks().0 {
-        turn::<MIDDLE, SMALL, S>(x, before);
-        turn::<INNER, SMALL, S>(x, inner);
-        turn::<MIDDLE, SMALL, S>(x, behind);
-        turn::<OUTER, SMALL, S>(x, outer);
+    let mut moved = *x;
+    for _ in 0..n {
+        for &[inner, outer] in turns.as_chunks().0 {
+            turn::<INNER, SMALL, S>(&mut moved, inner);
+            turn::<OUTER, SMALL, S>(&mut moved, outer);
+        }
     }
+    *x = moved;
+}
+
+fn three<const OUTER: usize, const MIDDLE: usize, const INNER: usize, const SMALL: bool, S: Real>(
+    turns: &[S],
+    n: u64,
+    x: &mut Point<S>,
+) {
+    let mut moved = *x;
+    for _ in 0..n {
+        for &[before, inner, behind, outer] in turns.as_chunks().0 {
+            turn::<MIDDLE, SMALL, S>(&mut moved, before);
+            turn::<INNER, SMALL, S>(&mut moved, inner);
+            turn::<MIDDLE, SMALL, S>(&mut moved, behind);
+            turn::<OUTER, SMALL, S>(&mut moved, outer);
+        }
+    }
+    *x = moved;
 }
 
 #[inline(always)]

@@ -11,8 +11,9 @@ use multiversion::multiversion;
 use super::block::PARTS;
 use crate::body::{Point, RENORMALIZE_EVERY};
 use crate::flow::turn_by;
-use crate::method::rk4::{FREE_CONSTANTS, FreeRk4};
-use crate::num::trig::{sin_cos_moderate, sin_cos_small};
+use crate::method::rk4::{RK4_CONSTANTS, Rk4Step};
+use crate::method::solve::turns::RENORMALIZE_SMALL_EVERY;
+use crate::num::trig::{sin_versine_moderate, sin_versine_small};
 use crate::num::{LANES, Lane};
 
 /// Does `$step` with the point of every lane in turn.
@@ -39,7 +40,7 @@ macro_rules! each {
 pub(crate) enum Kernel {
     /// Turns about principal axes, one after another; the constants are half their angles over the momentum about the axis.
     Turns(Vec<usize>, Width),
-    /// The classical Runge–Kutta method, normalised or not; the constants are those of [`FreeRk4`].
+    /// The classical Runge–Kutta method, normalised or not; the constants are those of [`Rk4Step`].
     Rk4(bool),
 }
 
@@ -70,11 +71,15 @@ pub(super) fn steps(kernel: &Kernel, points: &mut [Lane; PARTS], constants: &[La
     match kernel {
         Kernel::Turns(axes, width) => {
             let mut angles = [Lane::ZERO; 2];
+            let every = match width {
+                Width::Small => RENORMALIZE_SMALL_EVERY,
+                Width::Moderate => RENORMALIZE_EVERY,
+            };
             for step in range {
                 for (axis, half_rates) in axes.iter().zip(constants) {
                     turn(*axis, *width, points, half_rates, &mut angles);
                 }
-                if step % RENORMALIZE_EVERY == RENORMALIZE_EVERY - 1 {
+                if step % every == every - 1 {
                     each!(points, |n, x| x.renormalize());
                 }
             }
@@ -93,35 +98,39 @@ pub(super) fn steps(kernel: &Kernel, points: &mut [Lane; PARTS], constants: &[La
     }
 }
 
-/// A turn; `angles` is room for sine and cosine of half the angles.
+/// A turn; `angles` is room for the sines of half the angles, and for one less their cosines.
 #[inline(always)]
 fn turn(axis: usize, width: Width, points: &mut [Lane; PARTS], half_rates: &Lane, angles: &mut [Lane; 2]) {
-    let [sines, cosines] = angles;
+    let [sines, versines] = angles;
     let momenta = &points[4 + axis % 3];
     match width {
         Width::Small => {
             for n in 0..LANES {
-                (sines[n], cosines[n]) = sin_cos_small(momenta[n] * half_rates[n]);
+                (sines[n], versines[n]) = sin_versine_small(momenta[n] * half_rates[n]);
             }
         }
         Width::Moderate => {
             for n in 0..LANES {
-                (sines[n], cosines[n]) = sin_cos_moderate(momenta[n] * half_rates[n]);
+                (sines[n], versines[n]) = sin_versine_moderate(momenta[n] * half_rates[n]);
             }
         }
     }
     match axis {
-        0 => each!(points, |n, x| turn_by::<0, f64>(x, (sines[n], cosines[n]))),
-        1 => each!(points, |n, x| turn_by::<1, f64>(x, (sines[n], cosines[n]))),
-        _ => each!(points, |n, x| turn_by::<2, f64>(x, (sines[n], cosines[n]))),
+        0 => each!(points, |n, x| turn_by::<0, f64>(x, (sines[n], versines[n]))),
+        1 => each!(points, |n, x| turn_by::<1, f64>(x, (sines[n], versines[n]))),
+        _ => each!(points, |n, x| turn_by::<2, f64>(x, (sines[n], versines[n]))),
     }
 }
 
 #[inline(always)]
-fn rk4<const NORMALIZED: bool>(points: &mut [Lane; PARTS], constants: &[Lane; FREE_CONSTANTS]) {
-    let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10] = constants;
+fn rk4<const NORMALIZED: bool>(points: &mut [Lane; PARTS], constants: &[Lane; RK4_CONSTANTS]) {
+    let [c0, c1, c2, c3, c4, c5, c6, c7, c8] = constants;
     each!(points, |n, x| {
-        let rk4 = FreeRk4::of([c0[n], c1[n], c2[n], c3[n], c4[n], c5[n], c6[n], c7[n], c8[n], c9[n], c10[n]]);
-        x.set_phase(rk4.step::<NORMALIZED>(x.phase()));
+        let rk4 = Rk4Step::of([c0[n], c1[n], c2[n], c3[n], c4[n], c5[n], c6[n], c7[n], c8[n]]);
+        let mut moved = rk4.free(x.phase());
+        if NORMALIZED {
+            moved.attitude = moved.attitude.normalized();
+        }
+        x.set_phase(moved);
     });
 }
