@@ -93,14 +93,14 @@ fn of_order_four() -> Result<Vec<Box<dyn AnyMethod>>, Error> {
     let schemes =
         SCHEMES.iter().map(|name| method(name).map_err(unexpected)).collect::<Result<Vec<_>, _>>()?;
     let all = without_projections().into_iter().chain(schemes);
-    let is_one = |method: &Box<dyn AnyMethod>| {
+    let is_one = |method: &dyn AnyMethod| {
         let order = method.claims(Problem::Free).and_then(|claims| claims.order);
         // without torque kick-drift is exact, whatever its scheme
         let name = method.name();
         let exact = knows_the_motion(&name) || name.starts_with("kick-drift");
         order == Some(4) && method.tolerance().is_none() && !exact
     };
-    Ok(all.filter(is_one).collect())
+    Ok(all.filter(|method| is_one(method.as_ref())).collect())
 }
 
 fn examine(method: &dyn AnyMethod, truths: &[Truth]) -> Result<Errors, Error> {
