@@ -2,7 +2,7 @@
 //! cost.
 
 use polhode::body::Problem;
-use polhode::method::{AnyMethod, Claimed, method, without_projections};
+use polhode::method::{AnyMethod, method, without_projections};
 use polhode::num::Random;
 use polhode::run::Watch;
 use polhode::truth::{Care, Ending, LOST, Truth, evenly};
