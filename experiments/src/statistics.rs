@@ -1,4 +1,4 @@
-//! What many numbers amount to: the share of some with its interval, the largest, and the digits that are worth a line of a table.
+//! What many numbers amount to: the share of some with its interval, quantiles, the largest, and the digits that are worth a line of a table.
 
 /// The normal deviate that one in twenty exceeds, either sign.
 const ONE_IN_TWENTY: f64 = 1.959_963_984_540_054;
@@ -30,6 +30,24 @@ impl Interval {
         let low = if count == 0 { 0.0 } else { (centre - half).max(0.0) };
         let high = if count == of { 1.0 } else { (centre + half).min(1.0) };
         Some(Interval { share, low, high })
+    }
+}
+
+/// 10 %, median and 90 % of an ensemble.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Quantiles {
+    pub(crate) low: f64,
+    pub(crate) median: f64,
+    pub(crate) high: f64,
+}
+
+impl Quantiles {
+    /// By the nearest rank; `None` of no values. What is infinite stays so.
+    pub(crate) fn of(mut values: Vec<f64>) -> Option<Self> {
+        values.sort_by(f64::total_cmp);
+        let last = values.len().checked_sub(1)? as f64;
+        let [low, median, high] = [0.1, 0.5, 0.9].map(|share| values[(share * last).round() as usize]);
+        Some(Quantiles { low, median, high })
     }
 }
 

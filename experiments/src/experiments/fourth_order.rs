@@ -7,12 +7,12 @@ use polhode::num::Random;
 use polhode::run::Watch;
 use polhode::truth::{Care, Ending, LOST, Truth, evenly};
 use polhode_files::error::{Error, unexpected};
-use polhode_pages::table::{Column, Table, row};
+use polhode_pages::table::{Cell, Column, Table, row};
 
 use super::contestants::{SCHEMES, knows_the_motion, weighed};
 use super::phase::drawn;
 use crate::experiment::{Context, Report};
-use crate::statistics::{Interval, largest};
+use crate::statistics::{Interval, Quantiles, largest};
 
 const SEED: u64 = 1901;
 
@@ -46,39 +46,21 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let mut found = found.into_iter().collect::<Result<Vec<_>, Error>>()?;
     let of_rk4 = found.iter().position(|errors| errors.name == YARDSTICK);
     let yardstick = of_rk4.map(|k| found.remove(k)).ok_or_else(|| unexpected("rk4 is not of order four"))?;
-    found.sort_by(|a, b| median(&a.ratios(&yardstick).1).total_cmp(&median(&b.ratios(&yardstick).1)));
+    let mut found = found.iter().map(|errors| Beside::new(errors, &yardstick)).collect::<Option<Vec<_>>>();
+    let found = found.as_mut().ok_or_else(|| unexpected("no start from which an attitude is held"))?;
+    found.sort_by(|a, b| a.at_cost.ratios.median.total_cmp(&b.at_cost.ratios.median));
     let caption = format!(
         "Largest attitude error over that of rk4, methods of order four, from {bodies} random bodies and starts that turn by {span} rad: at the \
          step of 1/{} rad, and at as many evaluations (an implicit solution counts as six); below 1 a method is more accurate than rk4.",
         1.0 / STEP
     );
     let mut table = Table::new("methods", caption, columns());
-    for errors in &found {
-        let (at_step, at_cost) = errors.ratios(&yardstick);
-        let better = |ratios: &[f64]| ratios.iter().filter(|ratio| **ratio < 1.0).count() as u64;
-        let shares = [&at_step, &at_cost].map(|ratios| Interval::new(better(ratios), bodies));
-        table.push(row![
-            errors.name.as_str(),
-            errors.cost,
-            finite(quantile(&at_step, 0.1)),
-            finite(median(&at_step)),
-            finite(quantile(&at_step, 0.9)),
-            shares[0].map(|share| share.share),
-            shares[0].map(|share| share.low),
-            shares[0].map(|share| share.high),
-            finite(quantile(&at_cost, 0.1)),
-            finite(median(&at_cost)),
-            finite(quantile(&at_cost, 0.9)),
-            shares[1].map(|share| share.share),
-            shares[1].map(|share| share.low),
-            shares[1].map(|share| share.high),
-        ]);
+    for Beside { name, cost, at_step, at_cost } in found.iter() {
+        let cells = [at_step, at_cost].into_iter().flat_map(Compared::cells);
+        table.push(row![*name, *cost].into_iter().chain(cells));
     }
-    let beaten: Vec<&str> = found
-        .iter()
-        .filter(|errors| median(&errors.ratios(&yardstick).1) > 1.0)
-        .map(|errors| errors.name.as_str())
-        .collect();
+    let beaten = found.iter().filter(|one| one.at_cost.ratios.median > 1.0).map(|one| one.name);
+    let beaten: Vec<&str> = beaten.collect();
     let conclusion = format!(
         "Of {} other methods of order four, at as many evaluations, {} lose more of the attitude than rk4 in the median over {bodies} random bodies: {}",
         found.len(),
@@ -122,32 +104,49 @@ fn examine(method: &dyn AnyMethod, truths: &[Truth]) -> Result<Errors, Error> {
     Ok(Errors { name: method.name(), cost, at_step: errors(STEP)?, at_cost: errors(STEP * cost)? })
 }
 
-impl Errors {
-    /// Over those of another, ascending: at the same step, and at the same cost. Starts from which both are lost do not count.
-    fn ratios(&self, other: &Errors) -> (Vec<f64>, Vec<f64>) {
-        let over = |mine: &[f64], theirs: &[f64]| {
-            let ratios = mine.iter().zip(theirs).map(|(mine, theirs)| mine / theirs);
-            let mut ratios: Vec<f64> = ratios.filter(|ratio| !ratio.is_nan()).collect();
-            ratios.sort_by(f64::total_cmp);
-            ratios
-        };
-        (over(&self.at_step, &other.at_step), over(&self.at_cost, &other.at_cost))
+/// A method beside the yardstick.
+struct Beside<'a> {
+    name: &'a str,
+    cost: f64,
+    at_step: Compared,
+    at_cost: Compared,
+}
+
+/// Errors over those of the yardstick.
+struct Compared {
+    ratios: Quantiles,
+    /// Of the starts from which they are smaller.
+    better: Interval,
+}
+
+impl<'a> Beside<'a> {
+    /// `None` where there is no start from which one of the two holds the attitude.
+    fn new(errors: &'a Errors, yardstick: &Errors) -> Option<Self> {
+        Some(Beside {
+            name: &errors.name,
+            cost: errors.cost,
+            at_step: Compared::new(&errors.at_step, &yardstick.at_step)?,
+            at_cost: Compared::new(&errors.at_cost, &yardstick.at_cost)?,
+        })
     }
 }
 
-/// By the nearest rank, of ascending values; infinite of none.
-fn quantile(values: &[f64], share: f64) -> f64 {
-    let last = values.len().saturating_sub(1) as f64;
-    values.get((share * last).round() as usize).copied().unwrap_or(f64::INFINITY)
-}
+impl Compared {
+    /// Starts from which both are lost do not count.
+    fn new(mine: &[f64], theirs: &[f64]) -> Option<Self> {
+        let ratios = mine.iter().zip(theirs).map(|(mine, theirs)| mine / theirs);
+        let ratios: Vec<f64> = ratios.filter(|ratio| !ratio.is_nan()).collect();
+        let better = ratios.iter().filter(|ratio| **ratio < 1.0).count();
+        let better = Interval::new(better as u64, ratios.len() as u64)?;
+        Some(Compared { ratios: Quantiles::of(ratios)?, better })
+    }
 
-fn median(values: &[f64]) -> f64 {
-    quantile(values, 0.5)
-}
-
-/// Empty where the attitude is lost.
-fn finite(x: f64) -> Option<f64> {
-    Some(x).filter(|x| x.is_finite())
+    fn cells(&self) -> [Cell; 6] {
+        // empty where the attitude is lost
+        let held = |ratio: f64| Some(ratio).filter(|ratio| ratio.is_finite());
+        let Compared { ratios: Quantiles { low, median, high }, better } = self;
+        row![held(*low), held(*median), held(*high), better.share, better.low, better.high]
+    }
 }
 
 fn columns() -> Vec<Column> {
@@ -198,16 +197,11 @@ mod tests {
     }
 
     #[test]
-    fn ratios_leave_out_starts_from_which_both_are_lost() {
-        let of = |errors: &[f64]| Errors {
-            name: String::new(),
-            cost: 1.0,
-            at_step: errors.to_vec(),
-            at_cost: errors.to_vec(),
-        };
+    fn starts_from_which_both_are_lost_do_not_count() {
         let lost = f64::INFINITY;
-        let (ratios, _) = of(&[2.0, lost, lost, 1.0]).ratios(&of(&[1.0, lost, 1.0, lost]));
-        assert_eq!(ratios, [0.0, 2.0, lost]);
-        assert_eq!((quantile(&ratios, 0.5), finite(quantile(&ratios, 0.9))), (2.0, None));
+        let found = Compared::new(&[2.0, lost, lost, 1.0], &[1.0, lost, 1.0, lost]).unwrap();
+        assert_eq!(found.ratios, Quantiles { low: 0.0, median: 2.0, high: lost });
+        assert_eq!(found.better.share, 1.0 / 3.0);
+        assert!(Compared::new(&[lost], &[lost]).is_none());
     }
 }

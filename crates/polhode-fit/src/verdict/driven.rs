@@ -57,8 +57,8 @@ pub(crate) fn check_inputs(
         noise += own.len() as f64 * part.covariance(stretch).mean_variances().0 * variance;
     }
     let unexplained = (left - noise) / (slopes - noise);
-    match noise < AUDIBLE * slopes && unexplained > DRIVEN {
-        true => Err(FitError::Contradicted { unexplained: unexplained.min(1.0) }),
-        false => Ok(()),
+    if noise < AUDIBLE * slopes && unexplained > DRIVEN {
+        return Err(FitError::Contradicted { unexplained: unexplained.min(1.0) });
     }
+    Ok(())
 }

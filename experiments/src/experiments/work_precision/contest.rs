@@ -1,5 +1,7 @@
 //! Who reaches an accuracy at the least cost, over an ensemble of starts.
 
+use crate::statistics::Quantiles;
+
 /// One method at one step or tolerance, from every start.
 #[derive(Clone, Debug)]
 pub(super) struct Run {
@@ -25,26 +27,8 @@ pub(super) enum Currency {
     Time,
 }
 
-/// 10 %, median and 90 % of an ensemble.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Quantiles {
-    pub(super) low: f64,
-    pub(super) median: f64,
-    pub(super) high: f64,
-}
-
 /// Free motion is exact at any step of this one: it wins wherever it takes part.
 pub(super) const CLOSED_FORM: &str = "exact-step";
-
-impl Quantiles {
-    /// By the nearest rank; `None` of no values. What is infinite stays so.
-    pub(super) fn of(mut values: Vec<f64>) -> Option<Self> {
-        values.sort_by(f64::total_cmp);
-        let last = values.len().checked_sub(1)? as f64;
-        let [low, median, high] = [0.1, 0.5, 0.9].map(|share| values[(share * last).round() as usize]);
-        Some(Quantiles { low, median, high })
-    }
-}
 
 impl Run {
     pub(super) fn costs(&self, currency: Currency) -> &[f64] {

@@ -9,7 +9,8 @@ use polhode_files::error::{Error, unexpected};
 use super::super::contestants::{SCHEMES, TAKEN_BACK, weighed, weight};
 use super::Motions;
 use super::cases::{Case, LONG};
-use super::contest::{Contestant, Quantiles, Run};
+use super::contest::{Contestant, Run};
+use crate::statistics::Quantiles;
 use crate::timing::StepTime;
 
 /// Tolerances of methods that choose their steps.

@@ -5,9 +5,9 @@ use polhode_pages::table::{Cell, Column, Table, row};
 use super::super::contestants::knows_the_motion;
 use super::Motions;
 use super::cases::{Case, Kind, LONG};
-use super::contest::{CLOSED_FORM, Contestant, Currency, Quantiles, ranked};
+use super::contest::{CLOSED_FORM, Contestant, Currency, ranked};
 use super::entry::{Entry, Found};
-use crate::statistics::rounded;
+use crate::statistics::{Quantiles, rounded};
 
 /// Accuracies that winners are named for, rad.
 const ACCURACIES: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];

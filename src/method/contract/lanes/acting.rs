@@ -67,7 +67,7 @@ impl Acting {
         let Vec3([c1, c2, c3]) = linear.map_or(Vec3::zero(), |linear| linear.moment);
         let [w, x, y, z] = frame.unwrap_or(Quat::identity()).components();
         let tensor = gradient.as_ref().map_or(Matrix3::zeros(), |gradient| gradient.0);
-        let [a, b, c, d, e, f, g, h, i] = tensor.as_slice().try_into().unwrap_or([0.0; 9]);
+        let [[a, b, c], [d, e, f], [g, h, i]] = tensor.data.0;
         let Drag { linear: once, quadratic: twice } = drag.unwrap_or(Drag { linear: 0.0, quadratic: 0.0 });
         let acting = Acting {
             linear: linear.is_some(),
