@@ -58,9 +58,9 @@ pub const RIVALS: [Rival; 10] = [
 /// Samples of a Savitzky–Golay window.
 const WINDOWS: [usize; 7] = [51, 101, 151, 201, 301, 401, 601];
 /// Smallest half widths of the test functions of WENDy, in radians of the motion.
-const RADII: [f64; 5] = [0.5, 1.0, 2.0, 4.0, 8.0];
+const RADII: [f64; 5] = [0.35, 0.7, 1.4, 2.8, 5.6];
 /// Half widths of the likelihood, which has but one and costs ten times as much.
-const OF_LIKELIHOOD: [f64; 4] = [0.75, 1.5, 3.0, 6.0];
+const OF_LIKELIHOOD: [f64; 6] = [0.375, 0.75, 1.5, 3.0, 6.0, 12.0];
 /// Standard deviations of a coordinate of the tensor before a filter runs, shares of the trace.
 const PRIORS: [f64; 4] = [0.003, 0.01, 0.03, WIDE];
 /// That of the smoother: the widest, which adds least to the record.

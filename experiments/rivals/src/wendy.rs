@@ -9,7 +9,7 @@
 //!
 //! Source: D. M. Bortz, D. A. Messenger, V. Dukic, Bull. Math. Biol. 85 (2023) 110, doi 10.1007/s11538-023-01208-6.
 
-use nalgebra::{DMatrix, Matrix3, Matrix5, Vector5};
+use nalgebra::{DMatrix, Matrix3, Matrix5, Vector3, Vector5};
 
 use super::Answer;
 use super::coordinates::{basis, tensor};
@@ -41,23 +41,24 @@ struct Test {
 type Combination = Vec<f64>;
 
 /// The weak equations of a record.
-struct Weak<'a> {
-    stretches: &'a [Stretch],
-    tests: Vec<Vec<Test>>,
+struct Weak {
+    /// Of each stretch: how many test functions, and what their residuals' covariance is made of.
+    shared: Vec<(usize, Vec<Shared>)>,
     /// Orthonormal ones that take the place of the test functions, if any do.
     combinations: Vec<Option<Vec<Combination>>>,
     equations: Vec<Vec<[f64; 6]>>,
 }
 
-impl<'a> Weak<'a> {
-    fn new(stretches: &'a [Stretch], radius: f64) -> Self {
+impl Weak {
+    fn new(stretches: &[Stretch], radius: f64) -> Self {
         let tests: Vec<Vec<Test>> = stretches.iter().map(|s| tests(s, radius, PER_RADIUS)).collect();
         let equations = stretches.iter().zip(&tests).map(|(s, t)| equations(s, t)).collect();
-        Weak { stretches, combinations: tests.iter().map(|_| None).collect(), tests, equations }
+        let shared = stretches.iter().zip(&tests).map(|(s, t)| (t.len(), shared(s, t))).collect();
+        Weak { shared, combinations: tests.iter().map(|_| None).collect(), equations }
     }
 
     /// Of several widths, from `radius` on.
-    fn of_several(stretches: &'a [Stretch], radius: f64) -> Self {
+    fn of_several(stretches: &[Stretch], radius: f64) -> Self {
         let (mut all, mut combinations, mut all_equations) = (Vec::new(), Vec::new(), Vec::new());
         for s in stretches {
             let mut several: Vec<Test> =
@@ -74,17 +75,17 @@ impl<'a> Weak<'a> {
             };
             all_equations.push(leading.iter().flat_map(|v| (0..3).map(|c| combined(v, c))).collect());
             combinations.push(Some(leading));
-            all.push(several);
+            all.push((several.len(), shared(s, &several)));
         }
-        Weak { stretches, tests: all, combinations, equations: all_equations }
+        Weak { shared: all, combinations, equations: all_equations }
     }
 
     /// The equations whitened by their covariance at `x`, and the logarithm of its determinant.
     fn whitened(&self, x: &Vector5<f64>) -> Option<(Vec<Vec<[f64; 6]>>, f64)> {
         let (mut whitened, mut determinant) = (Vec::with_capacity(self.equations.len()), 0.0);
-        let parts = self.stretches.iter().zip(&self.tests).zip(&self.combinations).zip(&self.equations);
-        for (((s, tests), combinations), rows) in parts {
-            let mut covariance = covariance(s, tests, x);
+        let parts = self.shared.iter().zip(&self.combinations).zip(&self.equations);
+        for (((tests, shared), combinations), rows) in parts {
+            let mut covariance = covariance(*tests, shared, x);
             if let Some(combinations) = combinations {
                 covariance = covariance.of(combinations);
             }
@@ -234,42 +235,72 @@ fn equations(s: &Stretch, tests: &[Test]) -> Vec<[f64; 6]> {
     rows
 }
 
-/// Covariance of the residuals, in units of the variance of a sample.
-fn covariance(s: &Stretch, tests: &[Test], x: &Vector5<f64>) -> Banded {
-    let j = tensor(x);
-    let crossed: Vec<Matrix3<f64>> = s.rates.iter().map(|w| cross_derivative(&j, w)).collect();
-    let squares: Vec<Matrix3<f64>> = crossed.iter().map(|k| k * k.transpose()).collect();
-    let own = j * j;
-    let reach = (0..tests.len())
-        .map(|m| {
-            let last = tests[m].first + tests[m].values.len();
-            tests[m..].iter().take_while(|other| other.first < last).count()
-        })
-        .max()
-        .unwrap_or(1);
-    let mut sum = Banded::zeros(3 * tests.len(), 3 * reach);
+/// Sums over the samples that two test functions φ and ψ share.
+struct Shared {
+    /// Places of the two.
+    pair: (usize, usize),
+    /// φ ψ ω_a ω_b: of xx, yy, zz, xy, xz, yz.
+    second: [f64; 6],
+    /// φ ψ' ω, φ' ψ ω.
+    first: [Vector3<f64>; 2],
+    /// φ' ψ'.
+    zeroth: f64,
+}
+
+fn shared(s: &Stretch, tests: &[Test]) -> Vec<Shared> {
+    let mut all = Vec::new();
     for (m, test) in tests.iter().enumerate() {
         let last = test.first + test.values.len();
         for (l, other) in tests.iter().enumerate().skip(m).take_while(|(_, other)| other.first < last) {
-            let range = other.first..last.min(other.first + other.values.len());
             let shift = other.first - test.first;
             let one = test.values[shift..].iter().zip(&test.slopes[shift..]);
             let two = other.values.iter().zip(&other.slopes);
-            // Σ (φ K − φ' J) (ψ K − ψ' J)ᵀ by its four parts
-            let (mut kk, mut kj, mut jk) = (Matrix3::zeros(), Matrix3::zeros(), Matrix3::zeros());
-            let mut jj = 0.0;
-            let each = crossed[range.clone()].iter().zip(&squares[range]).zip(one).zip(two);
-            for (((k, square), (value, slope)), (other_value, other_slope)) in each {
-                kk += square * (value * other_value);
-                kj += k * (value * other_slope);
-                jk += k * (slope * other_value);
-                jj += slope * other_slope;
+            let mut sums =
+                Shared { pair: (m, l), second: [0.0; 6], first: [Vector3::zeros(); 2], zeroth: 0.0 };
+            for ((w, (value, slope)), (other_value, other_slope)) in
+                s.rates[other.first..].iter().zip(one).zip(two)
+            {
+                let weighted = w * (value * other_value);
+                let products = [
+                    weighted.x * w.x,
+                    weighted.y * w.y,
+                    weighted.z * w.z,
+                    weighted.x * w.y,
+                    weighted.x * w.z,
+                    weighted.y * w.z,
+                ];
+                sums.second.iter_mut().zip(products).for_each(|(sum, product)| *sum += product);
+                sums.first[0] += w * (value * other_slope);
+                sums.first[1] += w * (slope * other_value);
+                sums.zeroth += slope * other_slope;
             }
-            let block = kk - kj * j - j * jk.transpose() + own * jj;
-            for p in 0..3 {
-                for q in 0..3 {
-                    sum.add(3 * l + q, 3 * m + p, block[(p, q)]);
-                }
+            all.push(sums);
+        }
+    }
+    all
+}
+
+/// Covariance of the residuals, in units of the variance of a sample: Σ (φ K − φ' J) (ψ K − ψ' J)ᵀ, where K is linear in ω.
+fn covariance(tests: usize, shared: &[Shared], x: &Vector5<f64>) -> Banded {
+    let j = tensor(x);
+    let [a, b, c] = [Vector3::x(), Vector3::y(), Vector3::z()].map(|axis| cross_derivative(&j, &axis));
+    let both = |k: &Matrix3<f64>, l: &Matrix3<f64>| k * l.transpose() + l * k.transpose();
+    let squares =
+        [a * a.transpose(), b * b.transpose(), c * c.transpose(), both(&a, &b), both(&a, &c), both(&b, &c)];
+    let [after, before] = [[a, b, c].map(|k| k * j), [a, b, c].map(|k| j * k.transpose())];
+    let own = j * j;
+    let reach = shared.iter().map(|s| s.pair.1 - s.pair.0 + 1).max().unwrap_or(1);
+    let mut sum = Banded::zeros(3 * tests, 3 * reach);
+    for s in shared {
+        let mut block = own * s.zeroth;
+        squares.iter().zip(s.second).for_each(|(square, factor)| block += square * factor);
+        for k in 0..3 {
+            block -= after[k] * s.first[0][k] + before[k] * s.first[1][k];
+        }
+        let (m, l) = s.pair;
+        for p in 0..3 {
+            for q in 0..3 {
+                sum.add(3 * l + q, 3 * m + p, block[(p, q)]);
             }
         }
     }

@@ -33,7 +33,7 @@ const BODIES: [(&str, [f64; 3], f64); 4] = [
     ("planar", [1.0, 2.0, 3.0], 0.0),
     ("asymmetric, drag", [1.0, 2.0, 2.6], 0.01),
 ];
-/// One record of so many, but never fewer than two, is given to WENDy, which takes a hundred times as long as a fit.
+/// One record of so many, but never fewer than two, is given to WENDy, which takes the time of all others together.
 const OF_WENDY: u64 = 12;
 const OWN: &str = "weak form, denoised";
 /// Streams of random numbers for those attitudes, apart from those of the records.
