@@ -1,5 +1,5 @@
-//! Time of a state of the exact motion in arrays, attitudes and angular velocities in lists of their own: number of states, seconds a state.
-//! cargo run --release --example array_cost
+//! What a state of the exact motion costs when attitudes and angular velocities go into lists of their own. Prints the number of states
+//! and the seconds that one takes: cargo run --release --example array_cost
 
 use std::hint::black_box;
 use std::time::Instant;

@@ -1,4 +1,5 @@
-//! A force and a splitting scheme of one's own: a spring that pulls the body upright, stepped by a scheme of order 4.
+//! A force and a splitting scheme of one's own: a spring that pulls the body upright, stepped by a scheme of order 4:
+//! cargo run --release --example own_force_and_scheme
 
 use polhode::body::{Body, Conserved, Force, Potential, Time};
 use polhode::inertia::Inertia;

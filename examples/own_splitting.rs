@@ -1,4 +1,5 @@
-//! One's own splitting of the kinetic energy: a symmetric top, and a turn for what the body lacks of one.
+//! One's own splitting of the kinetic energy: a nearly symmetric body moves as a symmetric top, and a turn makes up for the difference:
+//! cargo run --release --example own_splitting
 
 use polhode::body::{Body, Conserved, Rotor};
 use polhode::flow::{SymmetricTop, Turn};

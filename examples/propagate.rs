@@ -1,4 +1,4 @@
-//! A tumbling wing nut by two turns a step, watched at every step: cargo run --release --example propagate
+//! A tumbling wing nut moved by `two-turn`, with its flips and its largest errors so far: cargo run --release --example propagate
 
 use polhode::body::Conserved;
 use polhode::{Body, Inertia, Run, Schedule, method};

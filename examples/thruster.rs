@@ -1,4 +1,5 @@
-//! A thruster that fires until body z is within 10 degrees of space x, and the free motion after it.
+//! A thruster that fires until body z is within 10 degrees of space x, and the attitude after a day of free motion from there:
+//! cargo run --release --example thruster
 
 use nalgebra::Vector3;
 use polhode::body::Force;
