@@ -18,7 +18,7 @@ pub enum Scale {
     Smoke,
     /// A few minutes in all
     Standard,
-    /// Full size, as in the article: less than two hours on two cores
+    /// Full size, as in the articles: some hours in all
     Paper,
 }
 

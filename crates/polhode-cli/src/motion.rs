@@ -37,12 +37,16 @@ const EXAMPLES: &str = "Examples:
 /// mode) or of the largest (short-axis mode). The table has these quantities:
 ///
 ///   mode                 long-axis, short-axis, separatrix or steady
+///   modulus, complement  k of the elliptic functions, and 1 - k^2, which is 0 on
+///                        the separatrix
 ///   polhode_period       L once round the axis, seen from the body; P_psi of
 ///                        light curves
-///   precession_period    the axis once round L, mean; P_phi of light curves
+///   precession_period    the axis once round L, mean; P_phi of light curves;
+///                        precession_rate is 2 pi over it
 ///   combined_period      P_1 of light curves: 1/P_1 = 1/P_phi + 1/P_psi in
 ///                        long-axis mode, 1/P_phi - 1/P_psi in short-axis mode
 ///   nutation_period      the axis towards L and back
+///   spin                 2E/|L|, the component of omega along L
 ///   separatrix_distance  (|L|^2/2E - I_middle)/I_middle, negative in long-axis
 ///                        mode
 ///   energy_ratio         energy over the least energy with this L

@@ -23,7 +23,7 @@ const TOLD: usize = 8;
 pub enum Committed {
     /// Some seconds for each experiment at most
     Smoke,
-    /// Full size: less than two hours on two cores; run.toml beside the committed numbers states the seconds of each experiment
+    /// Full size: some hours in all; run.toml beside the committed numbers states the seconds of each experiment
     Paper,
 }
 

@@ -17,7 +17,7 @@ pub(super) struct RuleArguments {
     /// Samples that a polynomial goes through, an even number [default: chosen from the record with its noise]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     samples: Option<usize>,
-    /// A rule that others run, in place of the Magnus series
+    /// A rule of other programs, in place of the Magnus series
     #[arg(long, value_enum, conflicts_with_all = ["order", "samples"])]
     rule: Option<RivalName>,
 }

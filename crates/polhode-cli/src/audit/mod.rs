@@ -43,12 +43,17 @@ const EXAMPLES: &str = "Examples:
 /// Reads CSV and other tables with a time and an attitude (quaternion, matrix, Euler angles, MRP), an angular velocity or an
 /// angular momentum in columns of any common names, the qpos and qvel of MuJoCo, and LAMMPS dumps; several bodies by a column
 /// id. Every convention that the columns allow is tried; the one in which the rows obey the equations of motion is kept. Without
-/// a body its moments are fitted up to a factor. right: every row and every column is within --tolerance of a motion of the
-/// body, within what its own digits tell, or within the noise that --noise declares. A wheel has its speed at the first row. A record that agrees within a noise that
-/// nobody declares is undecided. Where a name or an option states a direction, a frame, a unit or the order of the moments, and the
-/// rows contradict it, the record is wrong. suspect: kinematics-sign, omega-frame, transposed, moments-order, degrees, gyroscopic-term-missing,
-/// gyroscopic-sign, integrator:NAME, discontinuity, other-body, other-torque, other-wheel or none. Of a record that is wrong by its
-/// integrator, a method and a step that would do are named, if they are found within two seconds. Exit code 0: right; 1: wrong or undecided.
+/// a body its moments are fitted up to a factor. The speed of a wheel is that at the first row.
+///
+/// right: every row and every column is within --tolerance of a motion of the body, within what its own digits tell, or within
+/// the noise that --noise declares. A record that agrees within a noise that nobody declares is undecided. If the rows contradict
+/// a direction, a frame, a unit or the order of the moments that a name or an option states, the record is wrong.
+///
+/// suspect: kinematics-sign, omega-frame, transposed, moments-order, degrees, gyroscopic-term-missing, gyroscopic-sign,
+/// integrator:NAME, discontinuity, other-body, other-torque, other-wheel or none. If the integrator is to blame, a method and a
+/// step that would do are named, if they are found within two seconds.
+///
+/// Exit code 0: right; 1: wrong or undecided.
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 #[command(mut_group("BodyArguments", |group| group.required(false)))]

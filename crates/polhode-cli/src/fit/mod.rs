@@ -62,7 +62,7 @@ pub(crate) struct Fit {
     reading: RecordArguments,
     #[command(flatten)]
     poses: PoseArguments,
-    /// Half width of the window that smooths the equations, s; rarely needed; with wheels the equations then answer alone [default: that of the smallest uncertainty]
+    /// Half width of the window that smooths the equations, s; rarely needed; with wheels the likelihood on the exact motion is then left out [default: that of the smallest uncertainty]
     #[arg(long, value_name = "R", value_parser = positive, allow_hyphen_values = true)]
     radius: Option<f64>,
     /// Standard deviation of the noise, rad/s [default: from the samples]

@@ -25,7 +25,7 @@ pub(crate) struct RecordArguments {
     #[arg(long, value_name = "UNIT", value_parser = rate_unit, help_heading = "Reading")]
     rate_unit: Option<RateUnit>,
     /// Axes of the sensor by the columns of the rates, which must be right-handed: which column, with a sign before those that
-    /// are reversed, is x, y and z; -y in x,-y,z undoes a mirrored axis. Before everything else [default: x,y,z]
+    /// are reversed, is x, y and z; -y in x,-y,z undoes a mirrored axis. Applied before everything else [default: x,y,z]
     #[arg(long, value_name = "x,-y,z", value_parser = SignedAxes::parse, allow_hyphen_values = true, help_heading = "Reading")]
     axes: Option<SignedAxes>,
     /// Use only samples from t0 to t1, s; repeatable. With N: of the N-th file only [default: all samples if the body
