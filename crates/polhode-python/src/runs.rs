@@ -26,7 +26,8 @@ const MOST_STEPS: f64 = 1e12;
 ///
 /// `method` is a name of the catalogue, as `rk4`, `dmv:10` or `kick-drift@srkn-6b`, or `exact`, the closed form. `step`, s, is that of
 /// the method; methods that choose their steps take a `tolerance` and need no step. The start is that of `FreeMotion`. Without
-/// `errors` no step is watched, which is the quicker. `progress` is called as `progress(stage, done, seconds)` some times a second.
+/// `errors` no step is watched and no exact motion worked out, which is the quicker. `progress` is called as
+/// `progress(stage, done, seconds)` some times a second.
 ///
 /// >>> import polhode
 /// >>> run = polhode.run("rk4", [1, 2, 3], [0.4, 1, -0.3], times=[0, 500, 1000], step=0.1)
@@ -166,7 +167,7 @@ impl Asked<'_> {
                 )));
             }
         }
-        let exact = ExactMotion::from_point(body, run.start().to_dd()).ok();
+        let exact = self.errors.then(|| ExactMotion::from_point(body, run.start().to_dd()).ok()).flatten();
         let (mut rows, mut taken) = (Rows::default(), 0);
         let last = self.times.last().map_or(0.0, |last| (last - self.start_time) / h);
         for &t in self.times {

@@ -15,7 +15,7 @@ use crate::shown;
 /// A run at the times that were asked for: attitudes, angular velocities, and the largest errors of the invariants up to each.
 ///
 /// Errors are relative; `None` where the motion does not conserve the quantity, or where nothing was watched. `attitude_error` is
-/// the angle to the exact attitude, rad; `None` where the motion has no closed form.
+/// the angle to the exact attitude, rad; `None` where the motion has no closed form, or where nothing was watched.
 #[pyclass(frozen, module = "polhode")]
 pub(crate) struct Samples {
     pub(crate) method: String,

@@ -89,7 +89,7 @@ def test_runs_carry_their_errors():
     rattle = run("rattle", [1, 2, 3], OMEGA, times=times, step=0.1)
     assert rattle.momentum_vector_error[-1] < 1e-13 < 1e-4 < rattle.attitude_error[-1]
     bare = run("rattle", [1, 2, 3], OMEGA, times=times, step=0.1, errors=False)
-    assert bare.energy_error is None and bare.flips is None
+    assert bare.energy_error is None and bare.attitude_error is None and bare.flips is None
     assert_array_equal(bare.attitude, rattle.attitude)
     adaptive = run("dop853", [1, 2, 3], OMEGA, times=times, tolerance=1e-12)
     assert adaptive.attitude_error.max() < 1e-9

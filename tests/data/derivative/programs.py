@@ -18,11 +18,12 @@ import time
 from pathlib import Path
 
 HERE = Path(__file__).parent
-sys.path.insert(0, str(HERE.parent / "free_body"))
+sys.path[:0] = [str(HERE.parent / "free_body"), str(HERE.parents[2] / "benches")]
 
 import heyoka as hy
 import numpy as np
 import polhode
+from beside import ROOT, put, timed, turning
 from mpmath import mp, mpf
 
 import importlib.util
@@ -34,25 +35,17 @@ spec.loader.exec_module(derivative)
 MOMENTS = (1.0, 2.0, 3.0)
 OMEGA = (0.4, 1.0, -0.3)
 TIMES = (1e2, 1e3, 1e4)
-ROOT = HERE.parents[2]
-BEGIN, END = "<!-- begin derivative programs -->\n", "<!-- end derivative programs -->"
 REPEAT = 9
 
 
 def equations():
     q, m = hy.make_vars(*(f"q{k}" for k in range(4))), hy.make_vars(*(f"m{k}" for k in range(3)))
     omega = [m[k] / hy.par[k] for k in range(3)]
-    w, v = q[0], q[1:]
-    rate = [-(v[0] * omega[0] + v[1] * omega[1] + v[2] * omega[2])]
-    for k in range(3):
-        i, j = (k + 1) % 3, (k + 2) % 3
-        rate.append(w * omega[k] + v[i] * omega[j] - v[j] * omega[i])
-    turned = [(q[k], 0.5 * rate[k]) for k in range(4)]
     moved = []
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
         moved.append((m[k], m[i] * omega[j] - m[j] * omega[i]))
-    return turned + moved, list(m) + [hy.par[k] for k in range(3)]
+    return turning(q, omega) + moved, list(m) + [hy.par[k] for k in range(3)]
 
 
 def columns_of(integrator):
@@ -85,16 +78,6 @@ def error(found, right):
     return np.abs((found - right) * unit).max() / np.abs(right * unit).max()
 
 
-def timed(work):
-    """What `work` gives, and its least processor time, s."""
-    least, found = float("inf"), None
-    for _ in range(REPEAT):
-        clock = time.process_time()
-        found = work()
-        least = min(least, time.process_time() - clock)
-    return found, least
-
-
 def heyoka():
     """Name, version and set-up, s, with what gives columns and steps at t."""
     system, by = equations()
@@ -117,7 +100,7 @@ def closed_form():
         motion.at_with_derivative(1.0)
         return motion
 
-    motion, set_up = timed(first)
+    motion, set_up = timed(first, REPEAT)
     return (
         "polhode", polhode.__version__, set_up, lambda t: motion.at_with_derivative(t, by="momentum")[1],
         lambda matrix: matrix[:, 3:9], lambda _: "",
@@ -130,7 +113,7 @@ def main():
     for t in TIMES:
         right = exact(t)
         for name, version, set_up, at, columns, steps in programs:
-            found, least = timed(lambda: at(t))
+            found, least = timed(lambda: at(t), REPEAT)
             off = error(np.asarray(columns(found)), right)
             rows.append((name, version, f"{t:g}", steps(found), f"{off:.2g}", f"{least * 1e3:.3g}", f"{set_up:.2g}"))
     with open(ROOT / "experiments/data/derivative_programs.csv", "w", newline="") as file:
@@ -142,9 +125,7 @@ def main():
     table = "| program | t (s) | steps | error | time (ms) | set-up (s) |\n| :--- | ---: | ---: | ---: | ---: | ---: |\n"
     for name, version, t, steps, off, milliseconds, seconds in rows:
         table += f"| {name} {version} | {t} | {steps} | {off} | {milliseconds} | {seconds} |\n"
-    page = ROOT / "docs/exact-motion.md"
-    before, rest = page.read_text().split(BEGIN)
-    page.write_text(before + BEGIN + table + END + rest.split(END)[1])
+    put("exact-motion.md", "derivative programs", table)
     print(table)
 
 

@@ -13,7 +13,7 @@ three rounds, set-up of each clone included and compilation not.
 
 import csv
 import os
-import time
+import sys
 from pathlib import Path
 
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
@@ -23,8 +23,9 @@ import heyoka as hy
 import numpy as np
 import polhode
 
-ROOT = Path(__file__).resolve().parents[3]
-BEGIN, END = "<!-- begin flyby programs -->\n", "<!-- end flyby programs -->"
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "benches"))
+from beside import ROOT, apart, gradient, put, spinning, timed, to_body, turning
+
 GM, PERIGEE, ECCENTRICITY = 398_600.4418, 38_011.48649129103, 4.25390187321279
 PLANE = np.radians([152.0019490904037, 162.856154313485, 32.56762207107416])
 MOMENTS = np.array([0.61, 0.965, 1.0])
@@ -62,29 +63,12 @@ def place_and_velocity(t):
 def equations():
     q, w = hy.make_vars("q0", "q1", "q2", "q3"), hy.make_vars("w0", "w1", "w2")
     r, v = hy.make_vars("x", "y", "z"), hy.make_vars("vx", "vy", "vz")
-    q0, q1, q2, q3 = q
-    # rows of the transposed attitude: space to body
-    to_body = [
-        [1 - 2 * (q2 * q2 + q3 * q3), 2 * (q1 * q2 + q0 * q3), 2 * (q1 * q3 - q0 * q2)],
-        [2 * (q1 * q2 - q0 * q3), 1 - 2 * (q1 * q1 + q3 * q3), 2 * (q2 * q3 + q0 * q1)],
-        [2 * (q1 * q3 + q0 * q2), 2 * (q2 * q3 - q0 * q1), 1 - 2 * (q1 * q1 + q2 * q2)],
-    ]
-    p = [sum(row[k] * r[k] for k in range(3)) for row in to_body]
+    p = [sum(row[k] * r[k] for k in range(3)) for row in to_body(q)]
     squared = hy.sum([c * c for c in r])
     near3 = squared ** -1.5
-    strength = 3 * GM * near3 / squared
-    rates = []
-    for k in range(3):
-        i, j = (k + 1) % 3, (k + 2) % 3
-        difference = MOMENTS[j] - MOMENTS[i]
-        rates.append((w[k], (strength * difference * p[i] * p[j] - difference * w[i] * w[j]) / MOMENTS[k]))
-    turning = [
-        (q0, -0.5 * (q1 * w[0] + q2 * w[1] + q3 * w[2])),
-        (q1, 0.5 * (q0 * w[0] + q2 * w[2] - q3 * w[1])),
-        (q2, 0.5 * (q0 * w[1] + q3 * w[0] - q1 * w[2])),
-        (q3, 0.5 * (q0 * w[2] + q1 * w[1] - q2 * w[0])),
-    ]
-    return turning + rates + [(r[k], v[k]) for k in range(3)] + [(v[k], -GM * near3 * r[k]) for k in range(3)]
+    torque = gradient(MOMENTS, 3 * GM * near3 / squared, p)
+    falling = [(v[k], -GM * near3 * r[k]) for k in range(3)]
+    return turning(q, w) + spinning(MOMENTS, w, torque) + [(r[k], v[k]) for k in range(3)] + falling
 
 
 def starts():
@@ -93,14 +77,10 @@ def starts():
     return q / np.linalg.norm(q, axis=1)[:, None]
 
 
-def timed(work):
+def a_clone(work):
     """What `work` gives, and its least processor time a clone, ms."""
-    least, found = float("inf"), None
-    for _ in range(ROUNDS):
-        clock = time.process_time()
-        found = work()
-        least = min(least, time.process_time() - clock)
-    return found, 1e3 * least / CLONES
+    found, seconds = timed(work, ROUNDS)
+    return found, 1e3 * seconds / CLONES
 
 
 def one_by_one(tolerance, attitudes):
@@ -117,7 +97,7 @@ def one_by_one(tolerance, attitudes):
             found[k] = integrator.state[:4]
         return found
 
-    return timed(work)
+    return a_clone(work)
 
 
 def in_lanes(tolerance, attitudes):
@@ -141,7 +121,7 @@ def in_lanes(tolerance, attitudes):
             found[k : k + left] = integrator.state[:4, :left].T
         return found
 
-    return timed(work)
+    return a_clone(work)
 
 
 def ours(method, attitudes):
@@ -155,26 +135,14 @@ def ours(method, attitudes):
             found[k] = samples.attitude[-1]
         return found
 
-    return timed(work)
-
-
-def off(found, right):
-    """Angles between attitudes, rad."""
-    found = found / np.linalg.norm(found, axis=1)[:, None]
-    right = right / np.linalg.norm(right, axis=1)[:, None]
-    conjugate = right * np.array([1, -1, -1, -1])
-    a, u = conjugate[:, 0], conjugate[:, 1:]
-    b, w = found[:, 0], found[:, 1:]
-    real = a * b - np.einsum("ij,ij->i", u, w)
-    imaginary = a[:, None] * w + b[:, None] * u + np.cross(u, w)
-    return 2 * np.arctan2(np.linalg.norm(imaginary, axis=1), np.abs(real))
+    return a_clone(work)
 
 
 def main():
     attitudes = starts()
     right, _ = one_by_one(1e-18, attitudes)
     confirmed, _ = ours("taylor", attitudes)
-    difference = off(confirmed, right).max()
+    difference = apart(confirmed, right).max()
     assert difference < 1e-10, difference
     lanes = hy.recommended_simd_size()
     rows = []
@@ -185,7 +153,7 @@ def main():
             ("heyoka", hy.__version__, f"Taylor, {tolerance:g}", one_by_one(tolerance, attitudes)),
             ("heyoka", hy.__version__, f"Taylor in {lanes} lanes, {tolerance:g}", in_lanes(tolerance, attitudes)),
         ]:
-            errors = off(found, right)
+            errors = apart(found, right)
             rows.append((program, version, method, f"{np.median(errors):.1e}", f"{errors.max():.1e}", f"{cost:.2g}"))
     with open(ROOT / "experiments/data/flyby_programs.csv", "w", newline="") as file:
         file.write(f"# {CLONES} clones of Apophis past the Earth: attitude error at the end, rad, and processor time of one core a clone, ms.\n")
@@ -196,9 +164,7 @@ def main():
     table = "| program | method | median error (rad) | largest (rad) | ms a clone |\n| :--- | :--- | ---: | ---: | ---: |\n"
     for program, version, method, median, largest, cost in rows:
         table += f"| {program} {version} | {method} | {median} | {largest} | {cost} |\n"
-    page = ROOT / "docs/tumbling.md"
-    before, rest = page.read_text().split(BEGIN)
-    page.write_text(before + BEGIN + table + END + rest.split(END)[1])
+    put("tumbling.md", "flyby programs", table)
     print(table, f"heyoka at 1e-18 and taylor differ by {difference:.1e} rad at most")
 
 
