@@ -101,6 +101,18 @@ pub enum FitError {
         /// Share of the squared derivative of the rates.
         unexplained: f64,
     },
+    /// Components of the momentum of wheels stand in another order, or have other signs, than the rates tell.
+    #[error(
+        "the momentum of the wheels contradicts the rates: noise alone explains them where ({}) takes the place of (hx, hy, hz); look at \
+         the order, the signs and the axes of its components",
+        components(*order, *signs)
+    )]
+    Exchanged {
+        /// Which component of the record stands for each.
+        order: [usize; 3],
+        /// Sign of each.
+        signs: [f64; 3],
+    },
     /// Torques drive the body: its motion is not that of a free one.
     #[error(
         "the body is driven, and no tensor can be told: {}; throw the body, cut out of the record what is free, or \
@@ -343,6 +355,14 @@ fn nearest(torque: Option<f64>, most: f64) -> String {
     torque.filter(|torque| *torque > most).map_or("no stretch of free rotation is long enough for a fit".into(), |torque| {
         format!("the stretch nearest to a free rotation with drag leaves {torque:.3} tr(J) |w|^2, at most {most} is allowed")
     })
+}
+
+/// Components of a momentum in another order and with signs.
+fn components(order: [usize; 3], signs: [f64; 3]) -> String {
+    let each = order.iter().zip(signs);
+    let names =
+        each.map(|(&k, sign)| format!("{}h{}", if sign < 0.0 { "-" } else { "" }, ["x", "y", "z"][k]));
+    names.collect::<Vec<_>>().join(", ")
 }
 
 /// A share in per cent, to two digits.

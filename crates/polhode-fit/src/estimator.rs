@@ -43,7 +43,7 @@ use crate::sparse::{is_sparse, likeliest};
 use crate::thresholds::test_functions::SAMPLES_PER_TEST;
 use crate::thresholds::warnings::UNCERTAIN;
 use crate::units::Motion;
-use crate::verdict::driven::{check_driven, check_inputs};
+use crate::verdict::driven::{check_driven, check_inputs, check_order};
 use crate::verdict::units::open_units;
 
 /// Fits one tensor to all segments of a record.
@@ -166,6 +166,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
     }
     let mut chosen = climb(&stretches, demand, variance)
         .map_err(|failure| without_estimate(failure, record, settings, &stretches, rms))?;
+    check_order(&chosen, demand, &stretches, variance)?;
     let case = Case { stretches: &stretches, settings, variance, rms, is_sized: input.is_some() };
     let (supported, completed) = match case.judge(&chosen)? {
         Verdict::Unsettled => {

@@ -2,12 +2,18 @@
 
 use nalgebra::Vector3;
 
+use crate::columns::column::Column;
+use crate::columns::effect::Class;
 use crate::error::FitError;
 use crate::physical::constraint::Constraint;
 use crate::report::estimate::Estimate;
 use crate::report::torque_free::InvariantTrend;
+use crate::settings::torque::TorqueModel;
 use crate::signal::moments::Moments;
-use crate::signal::stretch::Stretch;
+use crate::signal::stretch::{KnownInputs, Stretch};
+use crate::solve::ladder::{Chosen, Demand, climb};
+use crate::solve::radius::{Ends, estimate, pilot};
+use crate::solve::rounds::Noise;
 use crate::solve::weak_estimate::WeakEstimate;
 use crate::thresholds::judgement::{AUDIBLE, DRIVEN, GROWN, GROWN_BY_HALF, OUTSIDE_OF_LAW};
 use crate::units::Motion;
@@ -61,4 +67,60 @@ pub(crate) fn check_inputs(
         return Err(FitError::Contradicted { unexplained: unexplained.min(1.0) });
     }
     Ok(())
+}
+
+/// Refuses momenta of wheels that noise alone explains with their components in another order or with other signs, and not as they are.
+pub(crate) fn check_order(
+    chosen: &Chosen,
+    demand: Demand<'_>,
+    stretches: &[Stretch],
+    variance: f64,
+) -> Result<(), FitError> {
+    let turns = |inputs: &KnownInputs| inputs.wheel.iter().any(|h| *h != Vector3::zeros());
+    if by_noise_alone(chosen, variance) || !stretches.iter().filter_map(|s| s.inputs.as_ref()).any(turns) {
+        return Ok(());
+    }
+    let free = Demand { torque: TorqueModel::Auto, noise: Noise::Fitted, ..demand };
+    let part = pilot(stretches);
+    // signs that are all reversed change that of the size alone
+    let signs = [[1.0; 3], [-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, -1.0]];
+    for (order, signs) in ORDERS.iter().flat_map(|order| signs.map(|signs| (*order, signs))).skip(1) {
+        let exchanged = |of: &[Stretch]| -> Vec<Stretch> {
+            of.iter().map(|stretch| stretch.with_exchanged(order, signs)).collect()
+        };
+        // quick, and of most of them no
+        let quick = estimate(&exchanged(&part), demand.radius, demand.columns, variance, Ends::Torques);
+        let is_likely = |weak: &WeakEstimate| weak.has_settled() && is_noise(weak, variance);
+        if !quick.ok().flatten().is_some_and(|weak| is_likely(&weak)) {
+            continue;
+        }
+        let Ok(found) = climb(&exchanged(stretches), free, variance) else { continue };
+        let weak = &found.weak;
+        let is_input = |column: &Column| column.class() == Class::Input;
+        let size = weak.columns.iter().position(is_input).and_then(|place| weak.at.c.get(place));
+        // wider test functions see less
+        let sees_as_much = weak.radius <= WIDER * chosen.weak.radius;
+        if let Some(size) = size
+            && by_noise_alone(&found, variance)
+            && weak.has_settled()
+            && sees_as_much
+        {
+            return Err(FitError::Exchanged { order, signs: signs.map(|sign| sign * size.signum()) });
+        }
+    }
+    Ok(())
+}
+
+/// How much wider the test functions may be of what is believed to explain more.
+const WIDER: f64 = 2.0;
+/// In which the components of a vector may be written; first as they are.
+const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]];
+
+/// Whether the best of all torque models and levels of torque noise is none, and leaves no more than noise.
+fn by_noise_alone(chosen: &Chosen, variance: f64) -> bool {
+    chosen.model == TorqueModel::None && !chosen.weak.has_torque_noise() && is_noise(&chosen.weak, variance)
+}
+
+fn is_noise(weak: &WeakEstimate, variance: f64) -> bool {
+    weak.misfit(variance) <= weak.expected_misfit()
 }
