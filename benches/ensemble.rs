@@ -4,8 +4,6 @@
 
 #![allow(clippy::expect_used)]
 
-mod fused;
-
 use std::hint::black_box;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -263,8 +261,6 @@ fn main() -> ExitCode {
             judge(steps * 1e3, known)
         );
     }
-
-    fused::table(BURSTS);
 
     let inertia = Inertia::from_moments([1.0, 2.0, 3.0]).expect("valid moments");
     for (what, omega) in

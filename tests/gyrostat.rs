@@ -2,9 +2,10 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::body::{Body, Clock, Conserved, Force, Problem, State, Wheel, WheelAtStart, WheelError};
-use polhode::flow::{FreeMotion, GyrostatMotion, NoClosedForm};
+use polhode::flow::{ExactMotion, FreeMotion, GyrostatMotion, NoClosedForm, TimeError};
 use polhode::inertia::Inertia;
 use polhode::method::{Claimed, StepError, catalogue, method};
+use polhode::num::Dd;
 use polhode::rotation::Quat;
 use polhode::run::{Ensemble, EnsembleError, Rows, Run};
 
@@ -406,6 +407,25 @@ fn the_closed_form_is_the_motion_that_taylor_series_follow() {
         let off = (about_l - character.turn_per_period.unwrap()) / std::f64::consts::TAU;
         assert!((off - off.round()).abs() < 1e-14);
         assert!((character.energy - body.energy(&start(&body))).abs() < 1e-14);
+    }
+}
+
+/// Of a free body, a top and a body with wheels, in any axes.
+#[test]
+fn each_time_of_an_exact_motion_has_the_bits_of_that_time_alone() {
+    let weight = Vector3::new(0.0, 0.0, 2.0);
+    let turn = UnitQuaternion::from_euler_angles(0.4, 0.2, -1.1).to_rotation_matrix();
+    let symmetric = turn * Matrix3::from_diagonal(&Vector3::new(1.25, 1.25, 0.75)) * turn.inverse();
+    let symmetric = Inertia::from_tensor((symmetric + symmetric.transpose()) * 0.5).unwrap();
+    let times: Vec<f64> = (-70..70).map(|n| 0.7 * f64::from(n)).chain([1e8, -3e12]).collect();
+    for body in [body(&[]), Body::heavy(symmetric, turn * weight).unwrap(), held()] {
+        let motion = ExactMotion::new(&body, &start(&body)).unwrap();
+        let mut seen = Vec::new();
+        motion.each_at(&times, |state, omega| seen.push((state, omega))).unwrap();
+        let alone = |t: &f64| (motion.at(*t).unwrap(), body.omega_of(&motion.point_at(Dd::from(*t))));
+        assert_eq!(seen, times.iter().map(alone).collect::<Vec<_>>());
+        let refused = motion.each_at(&[0.0, f64::NAN], |_, _| panic!("before all times are looked at"));
+        assert!(matches!(refused, Err(TimeError::NotFinite { .. })));
     }
 }
 

@@ -11,6 +11,7 @@ use super::orbit_table::Table;
 use super::time::reduced_angle;
 use super::{ForceError, Time};
 use crate::num::stumpff::{halvings, stumpff};
+use crate::num::trig::nearest;
 use crate::num::{Dd, Precise as _, Real};
 use crate::rotation::{Quat, Vec3};
 
@@ -20,12 +21,28 @@ const NAME: &str = "orbit";
 /// before.
 const MOST_DESCENTS: u32 = 2048;
 
-/// A place on a circle or an ellipse in `f64`.
+/// A place in `f64`, before the orbit is turned in space.
 #[derive(Clone, Copy)]
 struct Seen {
-    /// Mean motion, eccentricity and time.
-    of: ([f64; 2], Dd),
-    place: (f64, [f64; 2]),
+    of: Asked,
+    /// Since the least distance, s.
+    time: Dd,
+    place: (f64, Vec3<f64>),
+}
+
+/// Which orbit a place is on, but for its plane.
+#[derive(Clone, Copy, PartialEq)]
+enum Asked {
+    Mean {
+        rate: f64,
+        eccentricity: f64,
+    },
+    AtPassage {
+        rate: Dd,
+        eccentricity: f64,
+    },
+    /// By the number of the table.
+    Table(u64),
 }
 
 thread_local! {
@@ -63,8 +80,8 @@ pub struct Orbit {
 enum Speed {
     /// The mean motion on a circle or an ellipse, rad/s.
     Mean(f64),
-    /// √(GM/q³) with the least distance q, rad/s.
-    AtPassage(Dd),
+    /// √(GM/q³) with the least distance q, rad/s, and of a circle or an ellipse the period, s.
+    AtPassage { rate: Dd, period: Option<Dd> },
     /// Where it is at which time.
     Table(Arc<Table>),
 }
@@ -113,7 +130,9 @@ impl Orbit {
         if !(rate.hi() * rate.hi()).is_normal() {
             return Err(ForceError::RateOutOfRange { rate: rate.hi() });
         }
-        Ok(Orbit { speed: Speed::AtPassage(rate), eccentricity, passage: 0.0, plane: None })
+        let alpha = one_less(eccentricity);
+        let period = (alpha.hi() > 0.0).then(|| Dd::TAU / (rate * alpha * alpha.sqrt()));
+        Ok(Orbit { speed: Speed::AtPassage { rate, period }, eccentricity, passage: 0.0, plane: None })
     }
 
     /// An orbit about a mass with the gravitational parameter `gm` (m³/s²) by its places (m, axes of space) at ascending times (s), such as an
@@ -188,7 +207,7 @@ impl Orbit {
     pub(super) fn steady_rate(&self) -> Option<f64> {
         let rate = match &self.speed {
             Speed::Mean(rate) => *rate,
-            Speed::AtPassage(rate) => rate.hi(),
+            Speed::AtPassage { rate, .. } => rate.hi(),
             Speed::Table(_) => return None,
         };
         (self.eccentricity == 0.0 && self.plane.is_none()).then_some(rate)
@@ -197,12 +216,7 @@ impl Orbit {
     pub(crate) fn at<S: Real>(&self, at: Time) -> Place<S> {
         // the bits of a time from which nothing is taken stay
         let at = if self.passage == 0.0 { at } else { at.later(Dd::of(-self.passage)) };
-        let in_plane = |(strength, [x, y]): (S, [S; 2])| (strength, Vec3([x, y, S::of(0.0)]));
-        let (strength, direction) = match &self.speed {
-            Speed::Mean(rate) => in_plane(self.seen_by_mean_motion(*rate, at)),
-            Speed::AtPassage(rate) => in_plane(self.by_universal_variable(*rate, at)),
-            Speed::Table(table) => table.at(at),
-        };
+        let (strength, direction) = self.seen(at.dd());
         let direction = match self.plane {
             None => direction,
             Some(Quat { w, v }) => Quat::new(S::from_dd(w), Vec3(v.0.map(S::from_dd))).rotate(direction),
@@ -210,20 +224,34 @@ impl Orbit {
         Place { strength, direction }
     }
 
-    /// As [`by_mean_motion`](Self::by_mean_motion), in `f64` once for each time.
-    fn seen_by_mean_motion<S: Real>(&self, rate: f64, at: Time) -> (S, [S; 2]) {
-        let now = at.dd();
-        let of = ([rate, self.eccentricity], now);
+    /// As [`before_turning`](Self::before_turning), in `f64` once for each time.
+    fn seen<S: Real>(&self, time: Dd) -> (S, Vec3<S>) {
+        let eccentricity = self.eccentricity;
+        let of = match &self.speed {
+            Speed::Mean(rate) => Asked::Mean { rate: *rate, eccentricity },
+            Speed::AtPassage { rate, .. } => Asked::AtPassage { rate: *rate, eccentricity },
+            Speed::Table(table) => Asked::Table(table.number()),
+        };
         let is_f64 = TypeId::of::<S>() == TypeId::of::<f64>();
-        if let Some(seen) = LAST.get().filter(|seen| is_f64 && seen.of == of) {
-            let (strength, [x, y]) = seen.place;
-            return (S::of(strength), [S::of(x), S::of(y)]);
+        if let Some(seen) = LAST.get().filter(|seen| is_f64 && seen.of == of && seen.time == time) {
+            let (strength, direction) = seen.place;
+            return (S::of(strength), Vec3::of(direction));
         }
-        let found = self.by_mean_motion(rate, now);
+        let found = self.before_turning(time);
         if let Some(place) = (&found as &dyn Any).downcast_ref() {
-            LAST.set(Some(Seen { of, place: *place }));
+            LAST.set(Some(Seen { of, time, place: *place }));
         }
         found
+    }
+
+    /// 3 GM/r³ and r̂ in the plane of the orbit, of a table in space, `time` (s) since the least distance.
+    fn before_turning<S: Real>(&self, time: Dd) -> (S, Vec3<S>) {
+        let in_plane = |(strength, [x, y]): (S, [S; 2])| (strength, Vec3([x, y, S::of(0.0)]));
+        match &self.speed {
+            Speed::Mean(rate) => in_plane(self.by_mean_motion(*rate, time)),
+            Speed::AtPassage { rate, period } => in_plane(self.by_universal_variable(*rate, *period, time)),
+            Speed::Table(table) => table.at(time),
+        }
     }
 
     /// Of a circle or an ellipse, 3 n² (a/r)³ and r̂ in the plane of the orbit.
@@ -270,16 +298,9 @@ impl Orbit {
     ///
     /// With lengths in least distances q, times in √(q³/GM), α = 1 − e and Stumpff's functions cₖ of αχ²:
     /// `s = χ + e χ³ c₃`, `r = 1 + e χ² c₂`, `x = 1 − χ² c₂`, `y = √(1 + e) χ c₁`.
-    fn by_universal_variable<S: Real>(&self, rate: Dd, at: Time) -> (S, [S; 2]) {
-        let (e, alpha) = (self.eccentricity, Dd::sum(1.0, -self.eccentricity));
-        let since = at.dd();
-        let since = if alpha.hi() > 0.0 {
-            // less whole revolutions
-            let period = Dd::TAU / (rate * alpha * alpha.sqrt());
-            since - period * (since / period).round()
-        } else {
-            since
-        };
+    fn by_universal_variable<S: Real>(&self, rate: Dd, period: Option<Dd>, since: Dd) -> (S, [S; 2]) {
+        let (e, alpha) = (self.eccentricity, one_less(self.eccentricity));
+        let since = period.map_or(since, |period| since - period * revolutions(since, period));
         let scaled = (rate * since).hi();
         let x = universal_variable(scaled.abs(), e, alpha.hi());
         let halvings = halvings(alpha.hi() * x * x);
@@ -301,6 +322,23 @@ impl Orbit {
         }
         let strength = S::of(3.0) * rate * rate * (near * near * near);
         (strength, [(one - across) * near, wide * x * c1 * near])
+    }
+}
+
+/// 1 − e, exactly.
+fn one_less(eccentricity: f64) -> Dd {
+    Dd::sum(1.0, -eccentricity)
+}
+
+/// The whole number nearest to `since / period`.
+fn revolutions(since: Dd, period: Dd) -> Dd {
+    let turns = since.hi() / period.hi();
+    let whole = nearest(turns);
+    // less than 2⁻⁵¹ of this quotient is wrong: more digits decide only next to half a revolution, and beyond 2⁴⁹ of them
+    if (turns - whole).abs() < 0.5 - turns.abs() * (4.0 * f64::EPSILON) {
+        Dd::of(whole)
+    } else {
+        (since / period).round()
     }
 }
 
@@ -381,5 +419,62 @@ mod tests {
             count += 1;
         }
         assert_eq!(count, 88);
+    }
+
+    /// Whole revolutions are those of double-double, next to half a revolution and far out too.
+    #[test]
+    fn revolutions_are_those_of_double_double() {
+        for period in [Dd::TAU, Dd::ONE / 3.0, Dd::of(5400.0), Dd::TAU * 1e-9] {
+            for n in [0.0, 1.0, 2.0, 77.0, 1e6, 3e9, 2e14, 7e14, 4e15, 1e20] {
+                for part in [0.0, 0.25, 0.5, 0.75] {
+                    for off in [0.0, 1e-31, 1e-25, 1e-17, 3e-16, 1e-12, 1e-3] {
+                        for sign in [1.0, -1.0] {
+                            let turns = (Dd::sum(n, part) * (1.0 + sign * off) + off * sign) * sign;
+                            let since = period * turns;
+                            assert_eq!(revolutions(since, period), (since / period).round(), "{turns}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    /// The last place is kept: what is asked next, of which orbit ever, has the bits that it has where nothing is kept.
+    #[test]
+    fn places_do_not_depend_on_what_was_asked_before() {
+        let rows = |speed: f64| {
+            let times: [f64; 12] = core::array::from_fn(|k| 10.0 * k as f64 - 30.0);
+            let places = times.map(|t| [7.0 + 0.01 * t, speed * t, 0.003 * t * t]);
+            Orbit::table(3.0, &times, &places).unwrap()
+        };
+        let mut orbits: Vec<Orbit> =
+            [0.0, 0.3, 0.99, 1.0, 1.7].map(|e| Orbit::conic(2.0, 1.5, e).unwrap()).into();
+        orbits.extend([0.0, 0.3].map(|e| Orbit::ellipse((Dd::of(2.0 / 1.5).sqrt() / 1.5).hi(), e).unwrap()));
+        orbits.push(Orbit::conic(2.1, 1.5, 0.3).unwrap());
+        orbits.push(Orbit::conic(2.0, 1.5, 0.3).unwrap().passing_at(0.5).unwrap());
+        orbits.push(Orbit::conic(2.0, 1.5, 0.3).unwrap().in_plane([0.3, 0.8, 1.1]).unwrap());
+        let bits = |orbit: &Orbit, time: f64| {
+            let place = orbit.at::<f64>(Time::from_seconds(time));
+            [place.strength, place.direction[0], place.direction[1], place.direction[2]].map(f64::to_bits)
+        };
+        let mut asked = Vec::new();
+        for n in 0..300_usize {
+            // tables come and go, so that one may stand where another stood
+            let table = rows(0.4 + 0.1 * (n % 3) as f64);
+            let orbit = orbits.get(n % 11).unwrap_or(&table).clone();
+            let time = [0.5, 0.5, 1.0, -3.25, 40.0, 0.0, 0.5][n * 5 % 7];
+            asked.push((orbit.clone(), time, bits(&orbit, time)));
+            asked.push((orbit.clone(), time, bits(&orbit, time)));
+        }
+        for (orbit, time, found) in asked {
+            let fresh =
+                orbit.before_turning::<f64>(Time::from_seconds(time).later(Dd::of(-orbit.passage)).dd());
+            LAST.set(None);
+            assert_eq!(bits(&orbit, time), found, "{orbit:?} at {time}");
+            if orbit.plane.is_none() {
+                let (strength, Vec3([x, y, z])) = fresh;
+                assert_eq!([strength, x, y, z].map(f64::to_bits), found);
+            }
+        }
     }
 }

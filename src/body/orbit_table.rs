@@ -1,7 +1,8 @@
 //! Orbits on a table of places: a polynomial through the neighbouring rows.
 
+use core::sync::atomic::{AtomicU64, Ordering};
+
 use super::ForceError;
-use super::Time;
 use super::force::finite;
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
@@ -17,9 +18,14 @@ const FEWER: usize = 6;
 /// Two rows are a gap where the places by both differ between them by this share of the distance.
 const GAP: f64 = 1e-3;
 
+/// How many tables there have been.
+static TABLES: AtomicU64 = AtomicU64::new(0);
+
 /// Times and places of an orbit, with how far places between them are off.
 #[derive(Debug)]
 pub(super) struct Table {
+    /// No other table has or had it, as an address could.
+    number: u64,
     gm: f64,
     times: Vec<f64>,
     places: Vec<Vec3<f64>>,
@@ -29,7 +35,7 @@ pub(super) struct Table {
 /// No two of them are compared row by row.
 impl PartialEq for Table {
     fn eq(&self, other: &Table) -> bool {
-        core::ptr::eq(self, other)
+        self.number == other.number
     }
 }
 
@@ -56,7 +62,8 @@ impl Table {
                 return Err(ForceError::NotPositive { force: NAME, quantity: "a distance", value: distance });
             }
         }
-        let mut table = Table { gm, times: times.to_vec(), places, error: 0.0 };
+        let number = TABLES.fetch_add(1, Ordering::Relaxed);
+        let mut table = Table { number, gm, times: times.to_vec(), places, error: 0.0 };
         for k in 0..times.len() - 1 {
             let middle = 0.5 * (times[k] + times[k + 1]);
             let since = |node: f64| middle - node;
@@ -76,20 +83,23 @@ impl Table {
         [self.times[0], self.times[self.times.len() - 1]]
     }
 
+    pub(super) fn number(&self) -> u64 {
+        self.number
+    }
+
     pub(super) fn error(&self) -> f64 {
         self.error
     }
 
     /// 3 GM/r³ and r̂; not a number outside of the table.
-    pub(super) fn at<S: Real>(&self, at: Time) -> (S, Vec3<S>) {
-        let now = at.dd();
+    pub(super) fn at<S: Real>(&self, now: Dd) -> (S, Vec3<S>) {
         let [first, last] = self.span();
         if !(first..=last).contains(&now.hi()) {
             return (S::of(f64::NAN), Vec3([S::of(f64::NAN); 3]));
         }
         let after = self.times.partition_point(|time| *time <= now.hi());
         let k = after.clamp(1, self.times.len() - 1) - 1;
-        let place = self.through::<S, ROWS>(k, |node| at.counted_from::<S>(now - Dd::of(node)));
+        let place = self.through::<S, ROWS>(k, |node| S::linear(now - Dd::of(node), 1.0));
         let near = S::of(1.0) / place.norm();
         (S::of(3.0 * self.gm) * (near * near * near), place * near)
     }

@@ -94,11 +94,6 @@ impl Time {
         S::linear(self.dd(), 1.0)
     }
 
-    /// `time`, s, as a series that grows with its variable from there.
-    pub(super) fn counted_from<S: Real>(&self, time: Dd) -> S {
-        S::linear(time, 1.0)
-    }
-
     /// The angle `rate · t` (rate in rad/s), reduced to [−π, π] in double-double, so that many turns cost no digits of a
     /// double; as a series it goes on from there.
     #[must_use]

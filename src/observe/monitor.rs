@@ -38,6 +38,15 @@ pub(crate) struct Memory {
     pub(crate) positive: Option<bool>,
 }
 
+/// What a sample tells of the invariants at a point.
+pub(crate) struct Seen {
+    /// Energy, and |m| with the momentum of wheels, divided by [`Body::scale`].
+    pub(crate) energy: Dd,
+    pub(crate) momentum_norm: Dd,
+    pub(crate) energy_change: f64,
+    pub(crate) errors: Errors,
+}
+
 /// How many steps a run takes between two looks at them.
 pub(crate) const BLOCK: usize = 32;
 
@@ -129,30 +138,41 @@ impl Monitor {
 
     /// Errors of the point `x` itself, in double-double.
     pub fn errors(&self, x: &Point<f64>) -> Errors {
-        self.errors_at(self.clock.at(x.steps()), x)
+        let (at, x) = (self.clock.at(x.steps()), x.to_dd());
+        self.errors_at(at, &x, || self.energy(at, &x))
     }
 
-    /// The same of a point that is of the time `at`.
-    pub(crate) fn errors_at(&self, at: Time, x: &Point<f64>) -> Errors {
+    /// All that is told of the point `x` of the time `at`. The energy, which takes the longest where forces act, is worked out once.
+    pub(crate) fn seen(&self, at: Time, x: &Point<f64>) -> Seen {
+        let x = x.to_dd();
+        let energy = self.energy(at, &x);
+        Seen {
+            energy,
+            momentum_norm: with_wheels(self.wheels.as_ref(), at, &x).momentum_body.norm(),
+            energy_change: self.change_to(|| energy),
+            errors: self.errors_at(at, &x, || energy),
+        }
+    }
+
+    /// Errors of the point `x` of the time `at`, which has this energy.
+    fn errors_at(&self, at: Time, point: &Point<Dd>, energy: impl Fn() -> Dd) -> Errors {
         let Some(forced) = &self.forced else {
-            let x = x.to_dd();
             return self.errors_of([
-                (self.kinetic(&x) - self.start.energy).magnitude(),
-                (x.momentum_body.norm_squared() - self.start.momentum_squared).magnitude(),
-                (x.momentum_space() - self.start.momentum_space).norm().magnitude(),
+                (energy() - self.start.energy).magnitude(),
+                (point.momentum_body.norm_squared() - self.start.momentum_squared).magnitude(),
+                (point.momentum_space() - self.start.momentum_space).norm().magnitude(),
             ]);
         };
-        let point = x.to_dd();
         // a start at rest where potential and torque are zero has no scale of its own: that of the point then serves
         let relative = |error: f64, scale: f64, of_point: &dyn Fn() -> f64| match (error, scale) {
             (0.0, _) => 0.0,
             (error, 0.0) => error / of_point(),
             (error, scale) => error / scale,
         };
-        let whole = with_wheels(self.wheels.as_ref(), at, &point);
-        let kinetic = || self.kinetic(&point).hi();
+        let whole = with_wheels(self.wheels.as_ref(), at, point);
+        let kinetic = || self.kinetic(point).hi();
         let norm = || whole.momentum_body.norm().hi();
-        let energy = || self.kinetic(&point) + self.field.energy(at, point.attitude) - self.start.energy;
+        let energy = || energy() - self.start.energy;
         let momentum = || whole.momentum_space() - self.start.momentum_space;
         let size = || self.start.momentum_squared.sqrt();
         Errors {
@@ -176,21 +196,17 @@ impl Monitor {
     /// (E − E₀) / E₀ of the point `x`, with its sign; 0 at rest. With forces relative to the scale of [`Errors`].
     #[must_use]
     pub fn energy_change(&self, x: &Point<f64>) -> f64 {
-        self.energy_change_at(self.clock.at(x.steps()), x)
+        self.change_to(|| self.energy(self.clock.at(x.steps()), &x.to_dd()))
     }
 
-    /// The same of a point that is of the time `at`.
-    pub(crate) fn energy_change_at(&self, at: Time, x: &Point<f64>) -> f64 {
+    fn change_to(&self, energy: impl Fn() -> Dd) -> f64 {
         let scale = self.forced.map_or(self.start.energy, |forced| Dd::of(forced.energy_scale));
-        if scale.hi() == 0.0 {
-            return 0.0;
-        }
-        let x = x.to_dd();
-        let energy = match self.forced {
-            Some(_) => self.kinetic(&x) + self.field.energy(at, x.attitude),
-            None => self.kinetic(&x),
-        };
-        ((energy - self.start.energy) / scale).hi()
+        if scale.hi() == 0.0 { 0.0 } else { ((energy() - self.start.energy) / scale).hi() }
+    }
+
+    fn energy(&self, at: Time, x: &Point<Dd>) -> Dd {
+        let kinetic = self.kinetic(x);
+        if self.forced.is_none() { kinetic } else { kinetic + self.field.energy(at, x.attitude) }
     }
 
     fn kinetic(&self, x: &Point<Dd>) -> Dd {

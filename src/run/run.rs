@@ -7,7 +7,7 @@ use super::{Checkpoint, CheckpointError, RunError, Sample, Schedule, Watch, chec
 use crate::body::{Body, Clock, Point, State, StateError, Witness};
 use crate::method::{AnyMethod, SOLVED, Step, Work, throughout};
 use crate::num::Dd;
-use crate::observe::{BLOCK, Errors, Invariants, Monitor};
+use crate::observe::{BLOCK, Errors, Monitor};
 
 /// Steps between checks of the residual of implicit methods.
 const CHUNK: u64 = 4096;
@@ -410,7 +410,7 @@ impl Run {
     /// The sample of `point`, of the time `later` (s) behind its step.
     pub(super) fn sample_of(&self, point: Point<f64>, later: Dd) -> Sample {
         let at = self.clock.at(point.steps()).later(later);
-        let invariants = Invariants::of(&self.body, at, &point);
+        let seen = self.monitor.seen(at, &point);
         let scale = self.body.scale();
         let watched = self.watch == Watch::EveryStep && !self.missed;
         Sample {
@@ -420,10 +420,10 @@ impl Run {
             state: self.body.leave(&point),
             point,
             omega_body: self.body.omega_of(&point),
-            energy: invariants.energy.hi() * scale,
-            momentum_norm: invariants.momentum_norm().hi() * scale,
-            energy_change: self.monitor.energy_change_at(at, &point),
-            errors: self.monitor.errors_at(at, &point),
+            energy: seen.energy.hi() * scale,
+            momentum_norm: seen.momentum_norm.hi() * scale,
+            energy_change: seen.energy_change,
+            errors: seen.errors,
             worst: if self.watch == Watch::Never { Errors::NONE } else { self.monitor.worst() },
             watch: self.watch,
             flips: (watched && !self.step.takes_back()).then(|| self.monitor.flips()),

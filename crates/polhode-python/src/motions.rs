@@ -30,7 +30,7 @@ fn spare(rows: usize) -> usize {
     if rows > PART { rows / 4 + PART } else { 0 }
 }
 
-/// What both motions answer.
+/// What all motions answer.
 pub(crate) trait Motion: Sync {
     fn each_at(&self, times: &[f64], each: impl FnMut(State, Vector3<f64>)) -> Result<(), TimeError>;
     /// At a time that is within reach.
@@ -88,6 +88,7 @@ macro_rules! motion {
 
 motion!(flow::FreeMotion);
 motion!(flow::LagrangeTop);
+motion!(flow::GyrostatMotion);
 
 /// The motion of a free body from one start: its exact attitude and angular velocity at any time.
 ///

@@ -1,8 +1,8 @@
 //! Wheels on a body, and its motion with them.
 
 use nalgebra::Vector3;
-use polhode::body::{self, Point, State};
-use polhode::flow::{self, TimeError};
+use polhode::body;
+use polhode::flow;
 use polhode::num::Dd;
 use pyo3::prelude::*;
 
@@ -83,25 +83,6 @@ impl Wheel {
 pub(crate) struct GyrostatMotion {
     motion: flow::GyrostatMotion,
     order: Order,
-}
-
-impl Motion for flow::GyrostatMotion {
-    fn each_at(&self, times: &[f64], mut each: impl FnMut(State, Vector3<f64>)) -> Result<(), TimeError> {
-        times.iter().try_for_each(|&t| {
-            let state = self.at(t)?;
-            each(state, flow::GyrostatMotion::body(self).omega_body(&state));
-            Ok(())
-        })
-    }
-    fn point_at(&self, t: f64) -> Point<f64> {
-        flow::GyrostatMotion::point_at(self, t)
-    }
-    fn reach(&self) -> f64 {
-        flow::GyrostatMotion::reach(self)
-    }
-    fn body(&self) -> &polhode::Body {
-        flow::GyrostatMotion::body(self)
-    }
 }
 
 #[pymethods]

@@ -357,6 +357,7 @@ def test_a_body_with_wheels_moves_as_its_equations_say():
             k4 = rate(state + h * k3)
             state = state + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
         there = motion.at(20.0)
+        np.testing.assert_array_equal(motion.at([-3.0, 20.0]).omega[1], there.omega)
         assert abs(abs(there.attitude @ state[:4]) - 1) < 1e-9
         np.testing.assert_allclose(there.omega, state[4:7], atol=1e-8)
         assert abs(wheel.speed(20.0, there.omega) - state[7]) < 1e-6

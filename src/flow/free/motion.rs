@@ -48,8 +48,9 @@ impl FreeMotion {
         attitude: UnitQuaternion<f64>,
         omega_body: Vector3<f64>,
     ) -> Result<Self, StateError> {
-        let start = Body::free(inertia.clone()).enter_omega(attitude.into(), omega_body.into())?;
-        Ok(Self::from_point(inertia, start))
+        let body = Body::free(inertia.clone());
+        let start = body.enter_omega(attitude.into(), omega_body.into())?;
+        Ok(Self::of(body, start))
     }
 
     /// From a state at t = 0, body axes.
@@ -57,18 +58,24 @@ impl FreeMotion {
     /// # Errors
     /// As [`from_omega`](Self::from_omega).
     pub fn from_state(inertia: &Inertia, start: &State) -> Result<Self, StateError> {
-        let start = Body::free(inertia.clone()).enter(start)?;
-        Ok(Self::from_point(inertia, start))
+        let body = Body::free(inertia.clone());
+        let start = body.enter(start)?;
+        Ok(Self::of(body, start))
     }
 
     /// From a point of the solver frame at t = 0, whose attitude has norm 1, as those of [`Body::enter`] have. Any other norm
     /// is that of the attitudes at all times.
     pub fn from_point(inertia: &Inertia, start: Point<Dd>) -> Self {
-        let body = Body::free(inertia.clone());
+        Self::of(Body::free(inertia.clone()), start)
+    }
+
+    /// Of a `body` on which nothing acts.
+    fn of(body: Body, start: Point<Dd>) -> Self {
         let moments: Vec3<Dd> = body.rotor().moments();
+        let orbit = FreeOrbit::new(moments, start);
         // no part of the phase runs faster than G/I_l
-        let reach = MOST_RADIANS * (moments[moments.ascending()[0]] / start.momentum_body.norm()).to_f64();
-        FreeMotion { body, orbit: FreeOrbit::new(moments, start), reach, derivative: OnceLock::new() }
+        let reach = MOST_RADIANS * (moments[moments.ascending()[0]] / orbit.momentum_norm()).to_f64();
+        FreeMotion { body, orbit, reach, derivative: OnceLock::new() }
     }
 
     /// The body that moves.

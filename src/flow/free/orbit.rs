@@ -18,6 +18,8 @@ use crate::rotation::{Quat, Vec3};
 pub(crate) struct FreeOrbit {
     moments: Vec3<Dd>,
     start: Point<Dd>,
+    /// |m|.
+    norm: Dd,
     kind: Kind,
 }
 
@@ -66,7 +68,7 @@ impl FreeOrbit {
             let (axis, rate) = steady(moments, momentum, norm);
             Kind::Steady(Box::new(Spin::new(axis, rate)))
         };
-        FreeOrbit { moments, start, kind }
+        FreeOrbit { moments, start, norm, kind }
     }
 
     /// The point at the time `t` (s).
@@ -162,6 +164,11 @@ impl FreeOrbit {
         Variation::new(self.moments, self.start.momentum_body, polhode)
     }
 
+    /// |m|, which stays.
+    pub(super) fn momentum_norm(&self) -> Dd {
+        self.norm
+    }
+
     /// The point at the start.
     pub(super) fn start(&self) -> Point<Dd> {
         self.start
@@ -172,7 +179,7 @@ impl FreeOrbit {
         match &self.kind {
             Kind::Rest => Err(AtRest),
             Kind::Steady(spin) => {
-                let moment = self.start.momentum_body.norm() / spin.rate();
+                let moment = self.norm / spin.rate();
                 Ok(Character::steady(spin.rate(), moment, self.moments[self.moments.ascending()[1]]))
             }
             Kind::Circulating(orbit) => Ok(Character::circulating(&orbit.polhode, orbit.precise())),

@@ -108,6 +108,35 @@ impl GyrostatMotion {
         Ok(self.body.leave(&self.point_after(Dd::from(t))))
     }
 
+    /// Gives `each` the states at many `times` with their angular velocities, rad/s, body axes, in order: the bits of
+    /// [`at`](Self::at).
+    ///
+    /// ```
+    /// use nalgebra::Vector3;
+    /// use polhode::body::{Body, Wheel};
+    /// use polhode::flow::GyrostatMotion;
+    /// use polhode::Inertia;
+    /// let wheel = Wheel::new(Vector3::y(), 0.01, 300.0)?;
+    /// let body = Body::free(Inertia::from_moments([10.0, 12.0, 15.0])?).with_wheel(wheel)?;
+    /// let start = body.state(Default::default(), Vector3::new(0.1, -0.05, 0.2))?;
+    /// let mut fastest = 0.0_f64;
+    /// GyrostatMotion::new(&body, &start)?.each_at(&[-2.0, 0.0, 1e6], |_, omega| fastest = fastest.max(omega.norm()))?;
+    /// assert!((0.2..0.4).contains(&fastest));
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`at`](Self::at), of the first time that has no state; `each` is not called then.
+    pub fn each_at(&self, times: &[f64], mut each: impl FnMut(State, Vector3<f64>)) -> Result<(), TimeError> {
+        times.iter().try_for_each(|&t| TimeError::check(t, self.reach()))?;
+        let (exit, inverse_moments) = (Exit::of(&self.body), self.body.rotor().inverse_moments());
+        for &t in times {
+            let x = self.point_at(t);
+            each(exit.state(x.phase()), exit.omega(inverse_moments, x.momentum_body));
+        }
+        Ok(())
+    }
+
     /// The largest |t| at which the phases still have digits, s.
     #[must_use]
     pub fn reach(&self) -> f64 {

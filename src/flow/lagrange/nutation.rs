@@ -18,6 +18,8 @@
 //! part that jumps there is taken out of the integral (DLMF 19.7.9): its arc tangent multiplies with |α| to something
 //! linear in sn, cn and dn, and what remains in the integral is smooth.
 
+use core::any::Any;
+
 use super::cubic::Start;
 use crate::flow::free::reduce;
 use crate::num::complex::Complex;
@@ -31,9 +33,10 @@ const LONG: f64 = 8.0;
 /// The nutation of one heavy ball.
 #[derive(Clone, Debug)]
 pub(super) struct Nutation {
-    pub(super) rate: Dd,         // Ω
-    pub(super) parameter: Dd,    // k²
-    pub(super) complement: Dd,   // k'²
+    pub(super) rate: Dd,       // Ω
+    pub(super) parameter: Dd,  // k²
+    pub(super) complement: Dd, // k'²
+    modulus: Modulus<Dd>,
     pub(super) half: Option<Dd>, // K, unless infinite
     pub(super) phase: Dd,        // τ at t = 0
     pub(super) span: Dd,         // u₂ − u₁
@@ -88,12 +91,14 @@ impl Nutation {
         let between = x3 - x1;
         let rate = (b * between).sqrt() * Dd::of(0.5);
         let (parameter, complement) = (span / between, (w3 + y2) / between);
-        let half = (complement.hi() > 0.0).then(|| Modulus::new(complement).quarter_period());
+        let modulus = Modulus::new(complement);
+        let half = (complement.hi() > 0.0).then(|| modulus.quarter_period());
 
         let mut nutation = Nutation {
             rate,
             parameter,
             complement,
+            modulus,
             half,
             phase: Dd::ZERO,
             span,
@@ -209,10 +214,16 @@ impl Nutation {
         incomplete(sn, cn, self.parameter, self.complement)
     }
 
+    /// The modulus of k'², with the digits of `T`.
+    fn modulus<T: Precise>(&self) -> Modulus<T> {
+        let kept = (&self.modulus as &dyn Any).downcast_ref();
+        kept.copied().unwrap_or_else(|| Modulus::new(T::from_dd(self.complement)))
+    }
+
     /// α and β without the phases of the start.
     fn parameters<T: Precise>(&self, t: Dd) -> (Moving<T>, Moving<T>) {
         let tau = self.phase + self.rate * t;
-        let modulus = Modulus::<T>::new(T::from_dd(self.complement));
+        let modulus = self.modulus::<T>();
         let evaluate = |u: Dd| {
             let (sn, cn, dn) = modulus.sn_cn_dn(T::from_dd(u));
             Jacobi { u, sn, cn, dn }
@@ -280,7 +291,7 @@ impl Nutation {
         if self.alpha_jumps() || (turning * f.u).magnitude() < LONG {
             return self.alpha_phase(f);
         }
-        let (sn, cn, dn) = Modulus::new(self.complement).sn_cn_dn(f.u);
+        let (sn, cn, dn) = self.modulus.sn_cn_dn(f.u);
         T::from_dd(reduce(self.alpha_phase(Jacobi { u: f.u, sn, cn, dn }), Dd::TAU))
     }
 

@@ -118,28 +118,32 @@ impl Theta {
             Place::dual((grown - shrunk) * 0.5, (grown + shrunk) * 0.5, periods)
         };
 
-        let mut sums = sums(nutation, quarter, (!is_direct).then_some(dual_quarter));
-        let factor = |k: usize, sums: &Sums, exact: Complex<Dd>, t: Dd| {
-            let place = place(t);
-            let angle = reduce(sums.rate * t, Dd::TAU) + reduce(sums.jump * place.periods, Dd::TAU);
+        let mut sums = sums(nutation, quarter, dual_quarter, is_direct);
+        let factor = |k: usize, sums: &Sums, exact: Complex<Dd>, (t, place): &(Dd, Place<Dd>)| {
+            let jumps =
+                if sums.jump == Dd::ZERO { Dd::ZERO } else { reduce(sums.jump * place.periods, Dd::TAU) };
+            let angle = reduce(sums.rate * *t, Dd::TAU) + jumps;
             let found =
                 sums.value(if k == 0 { place.z } else { place.w }, place.double) * Complex::phase(angle);
             exact * found.inverse_conjugate().conjugate()
         };
+        let placed = |t: Dd| (t, place(t));
         // where none of the functions vanishes
-        let near = (quarter * 0.5 - nutation.phase) / nutation.rate;
-        let exact = functions::<Dd>(nutation, near);
+        let near = placed((quarter * 0.5 - nutation.phase) / nutation.rate);
+        let exact = functions::<Dd>(nutation, near.0);
+        let mut factors = [0, 1, 2].map(|k| factor(k, &sums[k], exact[k], &near));
         // half a period on, e^{iφ_ζ} tells the two possible rates apart
-        let far = near + period * 0.5;
-        let later = functions::<f64>(nutation, far)[2];
-        let turned = factor(2, &sums[2], exact[2], near).conjugate() * factor(2, &sums[2], later, far);
+        let far = placed(near.0 + period * 0.5);
+        let later = functions::<f64>(nutation, far.0)[2];
+        let turned = factors[2].conjugate() * factor(2, &sums[2], later, &far);
         if turned.re < Dd::ZERO {
             sums[2].rate = sums[2].rate - Dd::TAU / period;
+            factors[2] = factor(2, &sums[2], exact[2], &near);
         }
         let per_second = |rate: Dd| rate.scaled(-unit);
         let half_spin = spin * 0.5 / Dd::TAU;
         let fitted = |k: usize, scale: Dd, spins: f64| {
-            let (sums, factor) = (&sums[k], factor(k, &sums[k], exact[k], near));
+            let (sums, factor) = (&sums[k], factors[k]);
             let size = factor.norm_squared().sqrt() * scale;
             let part = |part: usize| polynomial(sums.parts[part].map(|x| x * size), sums.families[part]);
             let rate = per_second(sums.rate / Dd::TAU) + half_spin * spins;
@@ -283,8 +287,8 @@ fn functions<S: Precise>(nutation: &Nutation, t: Dd) -> [Complex<Dd>; 3] {
     [exactly(q.w, q.v[2]), exactly(q.v[0], q.v[1]), exactly(o1, o2)]
 }
 
-/// Z, W and V, in the dual form where K' is given. Of φ_ζ' only its value up to a frequency of the nutation is told here.
-fn sums(nutation: &Nutation, quarter: Dd, dual: Option<Dd>) -> [Sums; 3] {
+/// Z, W and V from K and K', in the direct form or the dual one. Of φ_ζ' only its value up to a frequency of the nutation is told here.
+fn sums(nutation: &Nutation, quarter: Dd, dual_quarter: Dd, is_direct: bool) -> [Sums; 3] {
     let ([x1, x2, x3], [y1, y2], w3) = (nutation.x, nutation.y, nutation.w3);
     let (between, span) = (x3 - x1, nutation.span);
     let x = nutation.apex[0];
@@ -302,27 +306,25 @@ fn sums(nutation: &Nutation, quarter: Dd, dual: Option<Dd>) -> [Sums; 3] {
     ];
     let signs = [sign_of(nutation.e), sign_of(nutation.d), -sign_of(off)];
     let argument = |[s, c, d]: [Dd; 3]| s.sqrt() * r_f(c, d, Dd::ONE);
-    let nome = |of: Dd, by: Dd| (-(Dd::PI * of / by)).exp();
+    let exponential = |of: Dd, by: Dd| (-(Dd::PI * of / by)).exp();
+    let nome = if !is_direct {
+        exponential(quarter, dual_quarter)
+    } else if nutation.parameter == Dd::ZERO {
+        Dd::ZERO
+    } else {
+        exponential(dual_quarter, quarter)
+    };
     let per_time = nutation.rate / (quarter * 2.0);
     let [mut z, mut w, mut v] = [0, 1, 2].map(|k| {
         let ([eta, rest], sign) = (zeros[k], signs[k]);
-        match dual {
-            None => {
-                let q = if nutation.parameter == Dd::ZERO {
-                    Dd::ZERO
-                } else {
-                    nome(Modulus::new(nutation.parameter).quarter_period(), quarter)
-                };
-                Sums::direct(k > 0, q, nome(argument(rest), quarter), sign)
-            }
-            Some(dual_quarter) => {
-                let alpha = Dd::FRAC_PI_2 * argument(eta) / dual_quarter;
-                let mut sums = Sums::dual(k > 0, nome(quarter, dual_quarter), alpha, sign);
-                sums.rate = sign * alpha * per_time * 2.0;
-                sums.jump = sign * (Dd::PI - alpha * 2.0);
-                sums
-            }
+        if is_direct {
+            return Sums::direct(k > 0, nome, exponential(argument(rest), quarter), sign);
         }
+        let alpha = Dd::FRAC_PI_2 * argument(eta) / dual_quarter;
+        let mut sums = Sums::dual(k > 0, nome, alpha, sign);
+        sums.rate = sign * alpha * per_time * 2.0;
+        sums.jump = sign * (Dd::PI - alpha * 2.0);
+        sums
     });
     // over a period of u the theta functions of x themselves turn by ±π
     let [alpha, beta] = nutation.advances();

@@ -8,7 +8,7 @@ use thiserror::Error;
 use super::derivative::Derivative;
 use super::nutation::Nutation;
 use super::theta::Theta;
-use crate::body::{Body, Point, State, StateError};
+use crate::body::{Body, Exit, Point, State, StateError};
 use crate::flow::free::reduce;
 use crate::flow::reach::{MOST_RADIANS, TimeError};
 use crate::num::{Dd, Precise, Real, Shown};
@@ -246,9 +246,10 @@ impl LagrangeTop {
     /// As [`at_many`](Self::at_many); `each` is not called then.
     pub fn each_at(&self, times: &[f64], mut each: impl FnMut(State, Vector3<f64>)) -> Result<(), TimeError> {
         times.iter().try_for_each(|&t| TimeError::check(t, self.reach()))?;
+        let (exit, inverse_moments) = (Exit::of(&self.body), self.body.rotor().inverse_moments());
         for &t in times {
             let x = self.point_at(t);
-            each(self.body.leave(&x), self.body.omega_of(&x));
+            each(exit.state(x.phase()), exit.omega(inverse_moments, x.momentum_body));
         }
         Ok(())
     }

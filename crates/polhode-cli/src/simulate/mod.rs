@@ -117,11 +117,8 @@ impl Simulate {
                 times.iter().map(|t| t + share * self.every * (random.uniform() - 0.5)).collect()
             };
             let written = scattered(self.jitter, &grid);
-            let sampled = if self.hidden_jitter > 0.0 {
-                scattered(self.hidden_jitter, &written)
-            } else {
-                written.clone()
-            };
+            let hidden = (self.hidden_jitter > 0.0).then(|| scattered(self.hidden_jitter, &written));
+            let sampled = hidden.as_deref().unwrap_or(&written);
             let mut omega = Vector3::from(start);
             if toss > 0 {
                 omega += random.normal_vector() * self.scatter;
@@ -134,7 +131,7 @@ impl Simulate {
             let SimulatedPoses { rates, attitudes, wheel, .. } = simulate_poses(
                 carrier.inertia(),
                 omega,
-                &sampled,
+                sampled,
                 &disturbances,
                 &gyroscope,
                 noise.unwrap_or(0.0),
@@ -143,22 +140,18 @@ impl Simulate {
             .map_err(|error| Error::Input(error.to_string()))?;
             let thrown = toss as f64 * (self.until + pause);
             // momenta are told for the time of the row, but for what the turning of the body makes of them when it is read
-            let told = written.iter().zip(&sampled).zip(&wheel).map(|((written, sampled), wheel)| {
+            let told = written.iter().zip(sampled).zip(&wheel).map(|((written, sampled), wheel)| {
                 disturbances.wheel_at(*written) + (wheel - disturbances.wheel_at(*sampled))
             });
             for (((t, w), q), h) in written.iter().zip(&rates).zip(&attitudes).zip(told) {
-                let mut cells = vec![thrown + t];
-                if noise.is_some() {
-                    cells.extend([q.w, q.i, q.j, q.k]);
-                }
-                if self.gyroscope.has_rates() {
-                    cells.extend(w.iter());
-                }
-                if tells_wheels {
-                    cells.extend(h.iter());
-                }
-                cells.extend(self.disturbances.known_torque().into_iter().flatten());
-                rows.push(cells.into_iter().map(Cell::from))?;
+                let attitude = noise.map(|_| [q.w, q.i, q.j, q.k]).into_iter().flatten();
+                let vector =
+                    |told: bool, v: Vector3<f64>| told.then(|| <[f64; 3]>::from(v)).into_iter().flatten();
+                let cells = std::iter::once(thrown + t).chain(attitude);
+                let cells =
+                    cells.chain(vector(self.gyroscope.has_rates(), *w)).chain(vector(tells_wheels, h));
+                let cells = cells.chain(self.disturbances.known_torque().into_iter().flatten());
+                rows.push(cells.map(Cell::from))?;
             }
         }
         rows.finish()

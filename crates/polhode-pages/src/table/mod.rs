@@ -6,7 +6,7 @@ mod print;
 mod rounded;
 mod row_writer;
 
-use std::borrow::Cow;
+use std::borrow::{Borrow, Cow};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -88,13 +88,14 @@ impl Cell {
         }
     }
 
-    fn json(&self) -> Value {
-        match self {
-            Self::Number(x) => Value::from(*x),
-            Self::Integer(n) => Value::from(*n),
-            Self::Text(text) => Value::from(text.as_str()),
-            Self::Empty => Value::Null,
-        }
+    /// Adds the JSON value that it is.
+    fn write_json(&self, line: &mut String) {
+        let _ = match self {
+            Self::Number(x) => write!(line, "{}", Value::from(*x)),
+            Self::Integer(n) => write!(line, "{n}"),
+            Self::Text(text) => line.write_str(&json_text(text)),
+            Self::Empty => line.write_str("null"),
+        };
     }
 }
 
@@ -241,15 +242,20 @@ impl Table {
 
     /// An array of objects, a row a line; an empty cell is null.
     pub fn json(&self) -> String {
-        let rows: Vec<String> = self.rows.iter().map(|row| self.json_row(row)).collect();
-        if rows.is_empty() { "[]\n".into() } else { format!("[\n{}\n]\n", rows.join(",\n")) }
+        if self.rows.is_empty() {
+            return "[]\n".into();
+        }
+        let (mut text, keys) = (String::from("[\n"), self.json_keys());
+        for (k, row) in self.rows.iter().enumerate() {
+            text += if k > 0 { ",\n" } else { "" };
+            write_json_row(row, &keys, &mut text);
+        }
+        text + "\n]\n"
     }
 
-    fn json_row(&self, row: &[Cell]) -> String {
-        let entry =
-            |(column, cell): (&Column, &Cell)| format!("{}:{}", Value::from(&*column.name), cell.json());
-        let entries: Vec<String> = self.columns.iter().zip(row).map(entry).collect();
-        format!("  {{{}}}", visible_json(&entries.join(",")))
+    /// The names of the columns as JSON.
+    fn json_keys(&self) -> Vec<String> {
+        self.columns.iter().map(|column| json_text(&column.name)).collect()
     }
 
     /// The columns of the rounded tables, with their place in a row.
@@ -283,6 +289,27 @@ fn write_row(row: impl IntoIterator<Item = Cell>, count: usize, line: &mut Strin
         }
     }
     line.push('\n');
+}
+
+/// Adds an object of JSON with these `keys`, the last of them null where `row` is short.
+fn write_json_row<C: Borrow<Cell>>(row: impl IntoIterator<Item = C>, keys: &[String], text: &mut String) {
+    let mut row = row.into_iter();
+    *text += "  {";
+    for (k, key) in keys.iter().enumerate() {
+        *text += if k > 0 { "," } else { "" };
+        *text += key;
+        text.push(':');
+        match row.next() {
+            Some(cell) => cell.borrow().write_json(text),
+            None => text.push_str("null"),
+        }
+    }
+    text.push('}');
+}
+
+/// A text as JSON that shows what a terminal would obey.
+fn json_text(text: &str) -> String {
+    visible_json(&Value::from(text).to_string()).into_owned()
 }
 
 /// A field by RFC 4180.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use polhode_files::error::Error;
 
-use super::{Cell, Format, Table, write_row};
+use super::{Cell, Format, Table, write_json_row, write_row};
 use crate::output::Output;
 
 /// More rows than this nobody reads, and their common width is known only with the last.
@@ -15,6 +15,8 @@ pub struct RowWriter {
     /// Its columns, and for [`Format::Table`] its rows.
     table: Table,
     format: Format,
+    /// For [`Format::Json`] the names of its columns.
+    keys: Vec<String>,
     output: Output,
     /// The row that is being written.
     line: String,
@@ -35,7 +37,8 @@ impl RowWriter {
     ) -> Result<Self, Error> {
         let format = Format::of(asked, out)?;
         let output = Output::new(out)?;
-        let rows = Self { table, format, output, line: String::new(), is_empty: true };
+        let keys = table.json_keys();
+        let rows = Self { table, format, keys, output, line: String::new(), is_empty: true };
         rows.check_readable(count.into().unwrap_or(0))?;
         Ok(rows)
     }
@@ -65,8 +68,10 @@ impl RowWriter {
                 self.output.write(&self.line)?;
             }
             Format::Json => {
-                let before = if self.is_empty { "[\n" } else { ",\n" };
-                self.output.write(&(before.to_string() + &self.table.json_row(&self.table.whole(row))))?;
+                self.line.clear();
+                self.line += if self.is_empty { "[\n" } else { ",\n" };
+                write_json_row(row, &self.keys, &mut self.line);
+                self.output.write(&self.line)?;
             }
         }
         self.is_empty = false;

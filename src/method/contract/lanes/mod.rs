@@ -2,8 +2,7 @@
 //! vector instructions there are.
 //!
 //! A lane is moved by the text that moves a single point, so that it has its bits. There is no fused multiply-add, which
-//! would round otherwise: the bits are those of every other set of instructions, too. The benchmark `ensemble` prints what
-//! that costs.
+//! would round otherwise: the bits are those of every other set of instructions, too.
 
 mod acting;
 mod block;
