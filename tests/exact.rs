@@ -1,6 +1,6 @@
 //! The exact free motion against fixtures of 36 digits (tests/data/free_body, mpmath) in every regime.
 
-use crate::fixtures::{BRINK, BY_REGIME, FreeCase, PUBLISHED, free_body};
+use crate::fixtures::{BRINK, BY_REGIME, FreeCase, PUBLISHED, WorstCase, free_body, worst_of_the_grid};
 use polhode::body::{Body, Point, State, Time};
 use polhode::flow::{AtRest, Flow, FreeBody, FreeMotion, Mode, TimeError};
 use polhode::inertia::Inertia;
@@ -230,119 +230,31 @@ fn a_tensor_as_a_rotation_leaves_it_spins_on() {
     }
 }
 
-/// What is compared in a case of [`WORST`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Of {
-    /// The angle, rad.
-    Attitude,
-    /// |ω − exact| over |exact|.
-    Omega,
-}
-
-/// Moments, ω at the start in rad/s, time in s.
-type Input = ([f64; 3], [f64; 3], f64);
-
-/// The worst of 1e8 points of the grid of the experiment `evaluator`, at paper and at standard scale, with their errors in units of 2⁻⁵³.
-const WORST: [(Of, f64, Input); 9] = [
-    (
-        Of::Attitude,
-        9.423339961475728,
-        (
-            [0.9999983374527797, 1.0, 2.079367061378367e-6],
-            [0.9861542601508156, 0.1658403112596736, -0.1482901175670908],
-            12.18860004244707,
-        ),
-    ),
-    (
-        Of::Attitude,
-        9.375862362620193,
-        (
-            [0.9998336957078641, 1.0, 0.9998990241393266],
-            [0.494899890303858, 0.3980371204029902, 0.7725558454465313],
-            1377447153.9677746,
-        ),
-    ),
-    (
-        Of::Attitude,
-        9.18043913419626,
-        (
-            [1.0, 0.9999999662713754, 1.194054399116472e-7],
-            [0.2553553360342832, 0.9668473071883841, -0.13432900872908873],
-            -2450976.3184850984,
-        ),
-    ),
-    (
-        Of::Attitude,
-        9.14365193721964,
-        (
-            [0.33067541209913065, 1.0, 0.8435399369753805],
-            [-0.8526130425220928, -0.8909144085205907, -0.42210822098941614],
-            -384762921.8183334,
-        ),
-    ),
-    (
-        Of::Attitude,
-        9.079881157875837,
-        (
-            [1.0, 0.9999999999996477, 0.5949511263856204],
-            [-0.9010940763168561, 0.43362364514217266, -1.0885450311031625e-6],
-            -85780643.50565475,
-        ),
-    ),
-    (
-        Of::Omega,
-        13.281518965555971,
-        (
-            [0.6650588298762717, 1.0, 0.665058829888403],
-            [1.442820802947844, 7.0758908226686455e-6, -0.42327345443812353],
-            -850.6585677521307,
-        ),
-    ),
-    (
-        Of::Omega,
-        10.3272771582163,
-        (
-            [1.0, 0.999999999999822, 0.9999999999998418],
-            [0.32448733285017484, 0.9181110173376207, 0.22755247892162253],
-            4206112901.7526965,
-        ),
-    ),
-    (
-        Of::Omega,
-        9.826143606825456,
-        (
-            [1.0, 0.9999999999861316, 0.9999999999715504],
-            [-0.40708776782151573, -0.14551982281567355, -1.0000000000284497],
-            123787059.12181804,
-        ),
-    ),
-    (
-        Of::Omega,
-        9.710377558776386,
-        (
-            [1.0, 0.9295635633829766, 0.9295635633591639],
-            [6.208744590950301e-6, 0.5960238824251425, 0.8955693756325043],
-            -17.40607508545539,
-        ),
-    ),
-];
-
 #[test]
 fn the_worst_points_of_the_grid_are_no_worse() {
-    for (of, most, (moments, omega, t)) in WORST {
-        let inertia = Inertia::from_moments(moments).unwrap();
-        let motion = FreeMotion::from_omega(&inertia, Default::default(), omega.into()).unwrap();
-        let exact = motion.point_at_dd(Dd::from(t));
-        let error = match of {
-            Of::Attitude => rotation_angle(motion.point_at(t).to_dd().attitude, exact.attitude).hi(),
-            Of::Omega => {
-                let inverse = Vec3(moments.map(|moment| Dd::from(motion.body().scale()) / moment));
+    // the worst of the grid at standard scale, beside those at paper scale
+    let of_standard = WorstCase {
+        quantity: "attitude".into(),
+        error: 9.423339961475728,
+        moments: [0.9999983374527797, 1.0, 2.079367061378367e-6],
+        omega: [0.9861542601508156, 0.1658403112596736, -0.1482901175670908],
+        t: 12.18860004244707,
+    };
+    for case in worst_of_the_grid().into_iter().chain([of_standard]) {
+        let inertia = Inertia::from_moments(case.moments).unwrap();
+        let motion = FreeMotion::from_omega(&inertia, Default::default(), case.omega.into()).unwrap();
+        let exact = motion.point_at_dd(Dd::from(case.t));
+        let error = match case.quantity.as_str() {
+            "attitude" => rotation_angle(motion.point_at(case.t).to_dd().attitude, exact.attitude).hi(),
+            "omega" => {
+                let inverse = Vec3(case.moments.map(|moment| Dd::from(motion.body().scale()) / moment));
                 let exact = exact.momentum_body.times(inverse);
-                let found = Vec3::of(Vec3::from(motion.omega_at(t).unwrap()));
+                let found = Vec3::of(Vec3::from(motion.omega_at(case.t).unwrap()));
                 ((found - exact).norm() / exact.norm()).hi()
             }
+            other => panic!("an error of {other}"),
         };
         let units = error / (f64::EPSILON / 2.0);
-        assert!(units <= most * 1.001, "{of:?} of {moments:?}, {omega:?} at {t} s: {units} u, not {most} u");
+        assert!(units <= case.error * 1.001, "{case:?}: {units} u");
     }
 }

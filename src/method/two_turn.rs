@@ -29,8 +29,9 @@ use crate::rotation::{Quat, Vec3};
 /// Reference: Fassò, J. Comput. Phys. 189 (2003) 527, compares the energy errors of such splittings.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TwoTurn {
-    /// Outer and inner axis; `None` takes those with the smallest leading error of the attitude on the orbit of the start, and
-    /// under forces and in compositions, where the orbit is not that of these turns, those that are usual for the moments.
+    /// Outer and inner axis; `None` takes those with the smallest leading error of the attitude as a root mean square over all starts of
+    /// the orbit, and under forces and in compositions, where the orbit is not that of these turns, those that are usual for the
+    /// moments.
     pub axes: Option<TwoAxes>,
 }
 

@@ -27,8 +27,8 @@ pub type LiePoisson = Splitting<AxisSplit, Kicks>;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AxisSplit {
-    /// Outermost axis first; `None` takes that with the smallest leading error of the attitude on the
-    /// [orbit](AxisOrder::best_for_orbit) of the start, and under forces and in compositions the [best](AxisOrder::best) for the
+    /// Outermost axis first; `None` takes that with the smallest leading error of the attitude as a root mean square over all
+    /// starts of the [orbit](AxisOrder::best_for_orbit), and under forces and in compositions the [best](AxisOrder::best) for the
     /// energy.
     pub axes: Option<AxisOrder>,
 }

@@ -135,12 +135,12 @@ fn drawn(kind: Kind, random: &mut Random) -> Start {
 /// Errors of one form in motions of one kind, by the angle turned, rad.
 type Errors = [Vec<f64>; TURNED.len()];
 
-/// For each angle turned: half of the motions, the largest, and those that are lost.
-const NAMES: [[&str; 3]; TURNED.len()] = [
-    ["median_1", "largest_1", "lost_1"],
-    ["median_1e3", "largest_1e3", "lost_1e3"],
-    ["median_1e6", "largest_1e6", "lost_1e6"],
-    ["median_1e9", "largest_1e9", "lost_1e9"],
+/// For each angle turned: its columns for half of the motions, the largest, and those that are lost, and the heading of the first.
+const NAMES: [([&str; 3], &str); TURNED.len()] = [
+    (["median_1", "largest_1", "lost_1"], "after 1 rad: median"),
+    (["median_1e3", "largest_1e3", "lost_1e3"], "after 1e3 rad: median"),
+    (["median_1e6", "largest_1e6", "lost_1e6"], "after 1e6 rad: median"),
+    (["median_1e9", "largest_1e9", "lost_1e9"], "after 1e9 rad: median"),
 ];
 
 pub(super) fn run(context: &Context, report: &mut Report) -> Result<(), Error> {
@@ -149,10 +149,14 @@ pub(super) fn run(context: &Context, report: &mut Report) -> Result<(), Error> {
         Column::new("motion", "", "kind of motion"),
         Column::new("form", "", "how the angle about L is found"),
     ];
-    for [median, largest, lost] in NAMES {
+    for ([median, largest, lost], heading) in NAMES {
         columns.extend([
-            Column::new(median, "rad", "attitude error of half of the motions, after as many rad").digits(2),
-            Column::new(largest, "rad", "largest attitude error; empty where an attitude is lost").digits(2),
+            Column::new(median, "rad", "attitude error of half of the motions, after as many rad")
+                .heading(heading)
+                .digits(2),
+            Column::new(largest, "rad", "largest attitude error; empty where an attitude is lost")
+                .heading("largest")
+                .digits(2),
             Column::new(lost, "", "motions whose attitude is more than 1 rad off").hidden(),
         ]);
     }

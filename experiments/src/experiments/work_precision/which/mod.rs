@@ -211,12 +211,12 @@ impl Which {
                 "{method} is quicker than every general-purpose method at every accuracy of all {count} problems"
             ),
             (None, Some((method, n))) => format!(
-                "No method is quicker than the general-purpose ones at every accuracy of every problem. In {with} of the {count} problems \
+                "Of the methods with a step error, none is quicker than the general-purpose ones at every accuracy of every problem. In {with} of the {count} problems \
                  (a body and a horizon) some method is so at every accuracy from half of the starts ({}); most often it is {method}, in {n}",
                 by_kind.join(", ")
             ),
             (None, None) => format!(
-                "No method is quicker than the general-purpose ones at every accuracy in any of the {count} problems (a body and a horizon)"
+                "Of the methods with a step error, none is quicker than the general-purpose ones at every accuracy in any of the {count} problems (a body and a horizon)"
             ),
         };
         let general: Vec<&str> = contests
@@ -322,7 +322,8 @@ mod tests {
         let beaten = [&both[..], &["top,b,100.0,0.01,rk8,yes,1.0", "top,b,100.0,0.01,split,no,1.5"]].concat();
         let claim = which(&beaten).claim();
         assert!(
-            claim.starts_with("No method is quicker") && claim.contains("In 1 of the 2 problems"),
+            claim.starts_with("Of the methods with a step error, none is quicker")
+                && claim.contains("In 1 of the 2 problems"),
             "{claim}"
         );
         assert!(claim.ends_with("rk4 1, rk8 1 of 2.\n"), "{claim}");
