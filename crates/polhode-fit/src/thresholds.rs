@@ -164,6 +164,8 @@ thresholds! {
         AUDIBLE: f64 = 0.5, "share of the squared derivative of the rates that noise may be where that of torques is told", UNMEASURED;
         UNTOLD: f64 = 1.0,
             "deviation of a torque, in units of the rate, beyond which the record says nothing of it", "torques_that_a_record_cannot_tell_are_named";
+        WIDER: f64 = 2.0,
+            "how much wider the test functions may be with which another order of a wheel's momentum explains the record", "wheels_are_fitted_to_the_bound_over_many_trials";
     }
     warnings: "warnings" {
         FAR: f64 = 6.0,

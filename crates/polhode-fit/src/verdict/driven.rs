@@ -15,7 +15,7 @@ use crate::solve::ladder::{Chosen, Demand, climb};
 use crate::solve::radius::{Ends, estimate, pilot};
 use crate::solve::rounds::Noise;
 use crate::solve::weak_estimate::WeakEstimate;
-use crate::thresholds::judgement::{AUDIBLE, DRIVEN, GROWN, GROWN_BY_HALF, OUTSIDE_OF_LAW};
+use crate::thresholds::judgement::{AUDIBLE, DRIVEN, GROWN, GROWN_BY_HALF, OUTSIDE_OF_LAW, WIDER};
 use crate::units::Motion;
 
 /// Refuses the tensor of a driven body; `rms` is the unit of the rates.
@@ -111,8 +111,6 @@ pub(crate) fn check_order(
     Ok(())
 }
 
-/// How much wider the test functions may be of what is believed to explain more.
-const WIDER: f64 = 2.0;
 /// In which the components of a vector may be written; first as they are.
 const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]];
 
