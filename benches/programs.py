@@ -20,6 +20,7 @@ import os
 import platform
 import sys
 from dataclasses import dataclass
+from pathlib import Path
 
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ[name] = "1"
@@ -393,6 +394,8 @@ def main():
     where += f"MuJoCo {mujoco.__version__}, Python {platform.python_version()}; {processor()}.\n"
     text += where
     print(text)
+    # what MuJoCo writes of steps that are too long
+    Path("MUJOCO_LOG.TXT").unlink(missing_ok=True)
     if is_trial:
         return
     with open(ROOT / "experiments/data/peer_programs.csv", "w", newline="") as file:
