@@ -103,8 +103,8 @@ pub enum FitError {
     },
     /// Components of the momentum of wheels stand in another order, or have other signs, than the rates tell.
     #[error(
-        "the momentum of the wheels contradicts the rates: noise alone explains them where ({}) takes the place of (hx, hy, hz); look at \
-         the order, the signs and the axes of its components",
+        "the momentum of the wheels contradicts the rates: it explains them where ({}) takes the place of (hx, hy, hz); look at the order, \
+         the signs and the axes of its components",
         components(*order, *signs)
     )]
     Exchanged {

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 
 use crate::columns::column::Column;
 use crate::columns::effect::Class;
+use crate::columns::sets::torque_columns;
 use crate::error::FitError;
 use crate::physical::constraint::Constraint;
 use crate::report::estimate::Estimate;
@@ -69,7 +70,8 @@ pub(crate) fn check_inputs(
     Ok(())
 }
 
-/// Refuses momenta of wheels that noise alone explains with their components in another order or with other signs, and not as they are.
+/// Refuses momenta of wheels that explain the rates with their components in another order or with other signs, and as they are do not without
+/// torques at random.
 pub(crate) fn check_order(
     chosen: &Chosen,
     demand: Demand<'_>,
@@ -77,10 +79,12 @@ pub(crate) fn check_order(
     variance: f64,
 ) -> Result<(), FitError> {
     let turns = |inputs: &KnownInputs| inputs.wheel.iter().any(|h| *h != Vector3::zeros());
-    if by_noise_alone(chosen, variance) || !stretches.iter().filter_map(|s| s.inputs.as_ref()).any(turns) {
+    if is_explained(chosen, variance) || !stretches.iter().filter_map(|s| s.inputs.as_ref()).any(turns) {
         return Ok(());
     }
     let free = Demand { torque: TorqueModel::Auto, noise: Noise::Fitted, ..demand };
+    let torques = [TorqueModel::Drag, TorqueModel::Constant].into_iter().flat_map(torque_columns);
+    let columns: Vec<Column> = torques.chain(demand.columns.iter().copied()).collect();
     let part = pilot(stretches);
     // signs that are all reversed change that of the size alone
     let signs = [[1.0; 3], [-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, -1.0]];
@@ -89,7 +93,7 @@ pub(crate) fn check_order(
             of.iter().map(|stretch| stretch.with_exchanged(order, signs)).collect()
         };
         // quick, and of most of them no
-        let quick = estimate(&exchanged(&part), demand.radius, demand.columns, variance, Ends::Torques);
+        let quick = estimate(&exchanged(&part), demand.radius, &columns, variance, Ends::Torques);
         let is_likely = |weak: &WeakEstimate| weak.has_settled() && is_noise(weak, variance);
         if !quick.ok().flatten().is_some_and(|weak| is_likely(&weak)) {
             continue;
@@ -101,7 +105,7 @@ pub(crate) fn check_order(
         // wider test functions see less
         let sees_as_much = weak.radius <= WIDER * chosen.weak.radius;
         if let Some(size) = size
-            && by_noise_alone(&found, variance)
+            && is_explained(&found, variance)
             && weak.has_settled()
             && sees_as_much
         {
@@ -114,9 +118,9 @@ pub(crate) fn check_order(
 /// In which the components of a vector may be written; first as they are.
 const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]];
 
-/// Whether the best of all torque models and levels of torque noise is none, and leaves no more than noise.
-fn by_noise_alone(chosen: &Chosen, variance: f64) -> bool {
-    chosen.model == TorqueModel::None && !chosen.weak.has_torque_noise() && is_noise(&chosen.weak, variance)
+/// Whether an estimate needs no torque noise, and leaves no more than noise.
+fn is_explained(chosen: &Chosen, variance: f64) -> bool {
+    !chosen.weak.has_torque_noise() && is_noise(&chosen.weak, variance)
 }
 
 fn is_noise(weak: &WeakEstimate, variance: f64) -> bool {

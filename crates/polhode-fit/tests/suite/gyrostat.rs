@@ -240,10 +240,10 @@ fn a_wrong_sign_of_the_wheel_is_told_from_noise() {
 #[ignore = "takes seconds, `.ci/run` does it"]
 fn exchanged_components_of_the_wheel_are_refused_by_their_order() {
     let mut random = Random::new(614);
-    for (share, rate) in [(0.1, 0.0), (1.0, 0.01)] {
+    for (share, rate, drag) in [(0.1, 0.0, 0.0), (1.0, 0.01, 0.0), (0.1, 0.0, 0.003)] {
         let mut case = Case::new([1.0, 2.0, 2.6], share, false, 60, &mut random);
         case.wheel = Vector3::new(0.9, -0.1, 0.4) * case.wheel.norm();
-        let acting = Disturbances::default().with_wheel_rate(case.wheel * rate);
+        let acting = Disturbances::default().with_wheel_rate(case.wheel * rate).with_relative_drag(drag);
         let record = case.record(&acting, 1e-3, Vector3::zeros(), 1.0, &mut random);
         assert!(fit(&record, &Settings::default()).is_ok());
         let orders = [([1, 0, 2], [1.0, 1.0, 1.0]), ([2, 1, 0], [1.0, -1.0, 1.0])];
@@ -257,8 +257,8 @@ fn exchanged_components_of_the_wheel_are_refused_by_their_order() {
                     );
                     assert_eq!([0, 1, 2].map(|k| order[found[k]]), [0, 1, 2]);
                 }
-                Err(other) => panic!("{share} {rate} {order:?}: {other}"),
-                Ok(e) => panic!("{share} {rate} {order:?}: {:?}", e.warnings),
+                Err(other) => panic!("{share} {rate} {drag} {order:?}: {other}"),
+                Ok(e) => panic!("{share} {rate} {drag} {order:?}: {:?}", e.warnings),
             }
         }
     }
