@@ -42,6 +42,8 @@ mod rotation;
 mod rounding;
 mod schemes;
 mod series;
+#[cfg(feature = "random")]
+mod spikes;
 mod strapdown;
 mod surface;
 mod switched;

@@ -1,8 +1,10 @@
 //! Records of measured angular velocity: checked row by row, split where they have gaps.
 
+mod bursts;
 mod clean;
 mod error;
 mod held;
+mod polynomial;
 mod quantum;
 mod rows;
 mod segment;
@@ -11,6 +13,7 @@ mod spikes;
 use nalgebra::Vector3;
 
 use crate::units::RateUnit;
+use bursts::bursts;
 use clean::{Cleaned, Finding, cleaned};
 pub use error::RecordError;
 #[doc(hidden)]
@@ -20,7 +23,7 @@ pub use segment::Inputs;
 use segment::NAMES;
 pub use segment::Segment;
 pub use spikes::Spike;
-use spikes::spikes;
+use spikes::{places, spikes};
 
 /// Measured angular velocities of one body: segments that share one tensor, each with a motion of its own.
 ///
@@ -100,22 +103,24 @@ impl Record {
         Record { unused: self.unused.clone(), ..Record::default() }
     }
 
-    /// The spikes of all segments, and the record without them, where there are any.
+    /// The spikes and bursts of all segments, and the record without them, where there are any.
     #[doc(hidden)]
     pub fn without_spikes(&self) -> Option<(Vec<Spike>, Record)> {
-        let each: Vec<Vec<usize>> = self.segments.iter().map(|segment| spikes(segment.rates())).collect();
+        let each: Vec<Vec<Outlier>> = self.segments.iter().map(outliers).collect();
         if each.iter().all(Vec::is_empty) {
             return None;
         }
         let mut all = Vec::new();
         let mut record = Record { findings: self.findings.clone(), ..self.of_none() };
-        for (k, (segment, spikes)) in self.segments.iter().zip(each).enumerate() {
-            record.segments.push(segment.without(&spikes));
-            all.extend(spikes.into_iter().map(|sample| Spike {
+        for (k, (segment, outliers)) in self.segments.iter().zip(each).enumerate() {
+            let samples: Vec<usize> = outliers.iter().map(|(sample, _)| *sample).collect();
+            record.segments.push(segment.without(&samples));
+            all.extend(outliers.into_iter().map(|(sample, burst)| Spike {
                 segment: k,
                 sample,
                 time: segment.times[sample],
                 line: segment.lines()[sample],
+                burst,
             }));
         }
         Some((all, record))
@@ -271,6 +276,37 @@ impl Record {
         self
     }
 }
+
+/// Spikes in a row that are a burst, at least.
+const IN_A_ROW: usize = 3;
+
+/// A sample that stands out of its neighbours, and the number of the burst that it lies in.
+type Outlier = (usize, Option<usize>);
+
+/// The samples of a segment that stand out of their neighbours, ascending.
+fn outliers(segment: &Segment) -> Vec<Outlier> {
+    let places = places(segment.times());
+    let spikes = spikes(&places, segment.rates());
+    let bursts = bursts(&places, segment.rates(), &spikes);
+    let rows = spikes.chunk_by(|a, b| a + 1 == *b).filter(|row| row.len() >= IN_A_ROW);
+    let mut runs: Vec<(usize, usize)> = rows.map(|row| (row[0], row[row.len() - 1])).collect();
+    runs.extend(bursts.iter().map(|burst| (burst.run.start, burst.run.end - 1)));
+    // what touches is one
+    runs.sort_unstable();
+    runs.dedup_by(|next, last| {
+        let touches = next.0 <= last.1 + 1;
+        last.1 = if touches { last.1.max(next.1) } else { last.1 };
+        touches
+    });
+    let mut found: Vec<usize> = bursts.into_iter().flat_map(|burst| burst.off).chain(spikes).collect();
+    found.sort_unstable();
+    let burst = |sample: usize| {
+        let k = runs.partition_point(|run| run.1 < sample);
+        runs.get(k).filter(|run| run.0 <= sample).map(|_| k)
+    };
+    found.into_iter().map(|sample| (sample, burst(sample))).collect()
+}
+
 /// The windows with those that overlap made one, in the order of their starts.
 ///
 /// # Errors
