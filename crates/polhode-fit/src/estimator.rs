@@ -27,6 +27,7 @@ use crate::report::mirror::reversed;
 use crate::report::nuisance::Agreement;
 use crate::report::parts::scatter;
 use crate::report::segments::summaries;
+use crate::report::sensor::suspect;
 use crate::report::systematic::errors;
 use crate::settings::Settings;
 use crate::settings::sensor::SensorPriors;
@@ -206,6 +207,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
     let bends = is_free && weak.root.try_inverse().is_some_and(is_vague);
     let spread = if bends { spread + beyond(&stretches, weak.x(), variance) } else { spread };
     let joint = Joint::new(weak, kept, deviation).ok_or_else(information)?;
+    let suspected = chosen.equations.as_ref().and_then(|own| suspect(weak, &stretches, own, (variance, rms)));
     let differing = differing(weak, deviation * deviation);
     let of_choice = joint.of_tensor(&spread);
     let joint = joint.widened(&of_choice).ok_or_else(information)?;
@@ -240,6 +242,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         per_segment,
         is_exact: likeliest.is_some(),
         prior: agreed,
+        suspect: suspected.as_ref(),
         dissipation: &dissipation,
     };
     let estimate = facts.report(answer, identifiability, motion.as_ref(), open.as_ref())?;

@@ -217,7 +217,13 @@ thresholds! {
         SCALE: f64 = 0.01, "relative error of scale", UNMEASURED;
         ALIGNMENT: f64 = 0.01, "error of a right angle, rad", UNMEASURED;
         LARGEST: f64 = 0.05,
-            "deviation of misalignments, rad, and of axis scales that are tried beside a fit", UNMEASURED;
+            "plausible deviation of misalignments, rad, and of axis scales that are tried beside a fit", UNMEASURED;
+        LARGEST_OFFSET: f64 = 0.35,
+            "the same of offsets, rad/s: 20 deg/s, the largest that makers of small sensors state for one that is not calibrated", UNMEASURED;
+        RANDOM_WALK: f64 = 3e-3,
+            "the same of a random walk of the offsets, rad/s per root of a second", UNMEASURED;
+        LARGEST_MAGNET: f64 = 0.03,
+            "the same of a torque that is fixed in space, over the trace, rad/s^2", UNMEASURED;
         HELD: f64 = 1e-6, "deviation of scale and alignment while the tensor is that of a sphere", UNMEASURED;
         DELAY: f64 = 1e-3, "delay of an axis, s", UNMEASURED;
         WHEEL: f64 = 1e-3, "momentum of a wheel over that of the body", UNMEASURED;

@@ -1,15 +1,18 @@
 //! What a fit takes to be zero, and what would explain the record better.
 
-use crate::columns::column::Column;
+use crate::columns::column::{Column, Unknowns};
 use crate::columns::offset::Offset;
 use crate::columns::rotor::Rotor;
-use crate::columns::sets::{axis_scales, magnet_columns, misalignments};
+use crate::columns::sets::{axis_scales, magnet_columns, misalignments, walk_columns};
 use crate::columns::skew::Skew;
+use crate::models::equations::Equations;
+use crate::physical::coordinates::tensor;
 use crate::report::parts::quantile;
+use crate::report::systematic::momentum;
 use crate::signal::stretch::Stretch;
 use crate::solve::stacked::Stacked;
 use crate::solve::weak_estimate::WeakEstimate;
-use crate::thresholds::errors::LARGEST;
+use crate::thresholds::errors::{LARGEST, LARGEST_MAGNET, LARGEST_OFFSET, RANDOM_WALK, WALK_STEPS};
 use crate::thresholds::warnings::{LEFT_OUT, SENSOR};
 
 /// Errors or torques of one kind that would explain a record better.
@@ -31,87 +34,109 @@ pub(crate) struct Suspect {
 struct Kind {
     what: &'static str,
     remedy: &'static str,
+    /// Each with the deviation that is plausible for it.
     columns: Vec<Column>,
-    /// Standard deviation of each column.
-    prior: Option<f64>,
+    /// The unit of the fit in that of the report.
+    unit: (f64, &'static str),
 }
 
 const FIT_IT: &str = ", unless they are fitted too, with a prior";
-
-fn kinds(stretches: &[Stretch], errors: &[Column]) -> Vec<Kind> {
-    let sensor = |what, columns| Kind { what, remedy: FIT_IT, columns, prior: None };
-    let other = |what, columns| Kind { remedy: "", ..sensor(what, columns) };
-    let axes = |what, columns| Kind { prior: Some(LARGEST), ..sensor(what, columns) };
-    let walk = errors.iter().copied().filter(|column| column.label().name.starts_with("walk"));
+/// All of them in a record whose unit of the rates is `rms`, rad/s.
+fn kinds(weak: &WeakEstimate, stretches: &[Stretch], rms: f64) -> Vec<Kind> {
+    let other = |what, columns: Vec<Column>, prior: f64| {
+        let columns: Vec<Column> = columns.iter().map(|column| column.with_prior(Some(prior))).collect();
+        let unit =
+            columns.first().map(Column::label).map_or((1.0, ""), |label| (label.factor(rms), label.unit));
+        Kind { what, remedy: "", columns, unit }
+    };
+    let sensor = |what, columns, prior| Kind { remedy: FIT_IT, ..other(what, columns, prior) };
+    let axes = |of: fn(usize) -> Column| (0..3).map(of).collect::<Vec<Column>>();
+    let delays = [1, 2].map(|k| Column::new(Skew(k), None)).to_vec();
+    let walk = walk_columns(stretches, RANDOM_WALK / rms / rms.sqrt(), WALK_STEPS);
+    let momentum = momentum(stretches, &tensor(&weak.x()));
     vec![
-        axes("a misalignment of the axes of the sensor", misalignments()),
-        axes("relative errors of scale of the axes of the sensor", axis_scales()),
-        sensor("offsets of the sensor", (0..3).map(|k| Column::new(Offset(k), None)).collect()),
-        sensor("delays of the axes of the sensor", [1, 2].map(|k| Column::new(Skew(k), None)).to_vec()),
-        other("offsets of the sensor that change", walk.collect()),
-        other("a wheel that turns in the body", (0..3).map(|k| Column::new(Rotor(k), None)).collect()),
+        sensor("a misalignment of the axes of the sensor", misalignments(), LARGEST),
+        sensor("relative errors of scale of the axes of the sensor", axis_scales(), LARGEST),
+        sensor("offsets of the sensor", axes(|k| Column::new(Offset(k), None)), LARGEST_OFFSET / rms),
+        sensor("delays of the axes of the sensor", delays, interval(stretches)),
+        Kind {
+            columns: walk,
+            unit: (rms, "rad/s"),
+            ..other("offsets of the sensor that change", Vec::new(), 1.0)
+        },
+        other("a wheel that turns in the body", axes(|k| Column::new(Rotor(k), None)), momentum),
         other(
             "a torque that is fixed in space, as on a magnet or of a suspension",
             magnet_columns(stretches),
+            LARGEST_MAGNET / rms / rms,
         ),
     ]
 }
 
+/// The median interval of the samples.
+fn interval(stretches: &[Stretch]) -> f64 {
+    let each = stretches.iter().flat_map(|stretch| stretch.times.windows(2).map(|pair| pair[1] - pair[0]));
+    let mut each: Vec<f64> = each.collect();
+    let middle = each.len() / 2;
+    if each.is_empty() { 0.0 } else { *each.select_nth_unstable_by(middle, f64::total_cmp).1 }
+}
+
 /// What the fit takes to be zero and the record does not: of all that it shows by more than chance brings, what explains most.
 ///
-/// `whitened` are the rows of each stretch with the columns `columns`, of which the first `errors` are those that the fit takes
-/// to be zero; `rms` is the unit rate, rad/s.
+/// `equations` are those of the estimate; `rms` is the unit rate, rad/s.
 pub(crate) fn suspect(
     weak: &WeakEstimate,
     stretches: &[Stretch],
-    columns: &[Column],
-    errors: usize,
-    whitened: &[Vec<f64>],
+    equations: &Equations,
     (variance, rms): (f64, f64),
 ) -> Option<Suspect> {
+    let errors = equations.errors();
+    let whitened = equations.with_errors(&weak.columns)?;
     let is_noisy = weak.has_torque_noise();
-    let kinds = kinds(stretches, &columns[..errors]).into_iter();
-    let each = kinds.filter_map(|kind| {
-        let Kind { what, remedy, prior, .. } = kind;
-        let label = kind.columns.first()?.label();
-        let place = |column: &Column| columns[..errors].iter().position(|own| own.is_alike(column));
-        let first = kind.columns.iter().map(place).collect::<Option<Vec<usize>>>()?;
-        let (size, gain) = gain_of(weak, columns, (&first, prior), errors, whitened, variance)?;
-        let by_chance = 0.5 * quantile(first.len() as f64, LEFT_OUT);
+    let tried = Tried { weak, errors, whitened: &whitened, variance };
+    let each = kinds(weak, stretches, rms).into_iter().filter_map(|kind| {
+        let (best, gain) = tried.with(&kind.columns)?;
+        let Kind { what, remedy, columns, unit } = kind;
+        let by_chance = 0.5 * quantile(columns.len() as f64, LEFT_OUT);
         // torques of real bodies, of which some look like torque noise, are not those of the fit either
         let least = if is_noisy { by_chance.max(SENSOR) } else { by_chance };
-        let size = size * label.factor(rms);
-        let suspect = Suspect { what, remedy, size, unit: label.unit, gain };
-        (gain > least).then_some((gain - first.len() as f64, suspect))
+        let own = best.c.iter().take(columns.len());
+        let size = own.fold(0.0, |largest: f64, value| largest.max(value.abs())) * unit.0;
+        let suspect = Suspect { what, remedy, size, unit: unit.1, gain };
+        (gain > least).then_some((gain - columns.len() as f64, suspect))
     });
     // more unknowns explain more in any case
     each.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, suspect)| suspect)
 }
 
-/// The largest of the errors `first`, each with a `prior`, and the gain of log-likelihood by all of them.
-fn gain_of(
-    weak: &WeakEstimate,
-    columns: &[Column],
-    (first, prior): (&[usize], Option<f64>),
-    errors: usize,
-    whitened: &[Vec<f64>],
+/// An estimate beside which errors are tried.
+struct Tried<'a> {
+    weak: &'a WeakEstimate,
+    /// The columns of the rows that are errors, which are the first.
+    errors: &'a [Column],
+    whitened: &'a [Vec<f64>],
     variance: f64,
-) -> Option<(f64, f64)> {
-    let kept: Vec<usize> = first.iter().copied().chain(errors..columns.len() + 6).collect();
-    let rows: Vec<Vec<f64>> = whitened
-        .iter()
-        .map(|rows| {
-            rows.chunks_exact(columns.len() + 6).flat_map(|row| kept.iter().map(|&k| row[k])).collect()
-        })
-        .collect();
-    let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
-    let tried = first.iter().map(|&k| columns[k].with_prior(prior));
-    let with: Vec<Column> = tried.chain(weak.columns.iter().copied()).collect();
-    let mut at = weak.at.clone();
-    at.c = vec![0.0; first.len()].into_iter().chain(at.c).collect();
-    let stacked = Stacked::new(&rows, &with, &at, variance.sqrt());
-    let gain = 0.5 * (weak.squares - stacked.squares) / variance;
-    let best = stacked.minimiser()?;
-    let size = best.c[..first.len()].iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-    Some((size, gain))
+}
+
+impl Tried<'_> {
+    /// Where everything is best with these errors, which come before the columns of the estimate; and the gain of log-likelihood.
+    fn with(&self, columns: &[Column]) -> Option<(Unknowns, f64)> {
+        let Tried { weak, errors, whitened, variance } = *self;
+        columns.first()?;
+        let place = |column: &Column| errors.iter().position(|own| own.is_alike(column));
+        let first = columns.iter().map(place).collect::<Option<Vec<usize>>>()?;
+        let width = errors.len() + weak.columns.len() + 6;
+        let kept: Vec<usize> = first.iter().copied().chain(errors.len()..width).collect();
+        let pick = |rows: &Vec<f64>| -> Vec<f64> {
+            rows.chunks_exact(width).flat_map(|row| kept.iter().map(|&k| row[k])).collect()
+        };
+        let rows: Vec<Vec<f64>> = whitened.iter().map(pick).collect();
+        let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+        let with: Vec<Column> = columns.iter().chain(&weak.columns).copied().collect();
+        let mut at = weak.at.clone();
+        at.c = vec![0.0; first.len()].into_iter().chain(at.c).collect();
+        let stacked = Stacked::new(&rows, &with, &at, variance.sqrt());
+        let gain = 0.5 * (weak.squares - stacked.squares) / variance;
+        Some((stacked.minimiser()?, gain))
+    }
 }

@@ -28,7 +28,7 @@ pub(super) struct Grounds<'a> {
     /// Units that explain the record as well.
     pub(super) open: Option<&'a Others>,
     /// What the fit takes to be zero and would explain the record better.
-    pub(super) suspect: Option<Suspect>,
+    pub(super) suspect: Option<&'a Suspect>,
     /// What the free motion leaves of the samples, of a free body: mean square of a component over that of the noise, and the number of
     /// components.
     pub(super) left: Option<(f64, f64)>,
@@ -116,7 +116,7 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     if noise_found && density > 0.0 && e.unexplained.is_none_or(|share| share > UNEXPLAINED) {
         list.push(Warning::TorqueNoise { density, unexplained: e.unexplained });
     }
-    if let Some(Suspect { what, remedy, size, unit, gain }) = suspect {
+    if let Some(&Suspect { what, remedy, size, unit, gain }) = suspect {
         list.push(Warning::LeftOut { what, size, unit, gain, remedy });
     }
     list.extend(halves(weak, grounds.variance * misfit.max(1.0)).map(Warning::Halves));
