@@ -69,7 +69,7 @@ pub use carrier::fit_carrier;
 pub use carrier::proof::ProofBody;
 pub use carrier::records::{Attached, CarrierRecords};
 pub use carrier::warning::CarrierWarning;
-pub use error::{Clash, FitError};
+pub use error::{Clash, FitError, ToldComponent};
 pub use estimator::fit;
 pub use flights::flight::{Flight, FlightLimit};
 pub use flights::{Flights, during, flights};

@@ -165,7 +165,14 @@ thresholds! {
         UNTOLD: f64 = 1.0,
             "deviation of a torque, in units of the rate, beyond which the record says nothing of it", "torques_that_a_record_cannot_tell_are_named";
         WIDER: f64 = 2.0,
-            "how much wider the test functions may be with which another order of a wheel's momentum explains the record", "wheels_are_fitted_to_the_bound_over_many_trials";
+            "how much wider the test functions may be with which another order, or another size of a component, of a wheel's momentum explains the record", "wheels_are_fitted_to_the_bound_over_many_trials";
+        ENORMOUS: f64 = 100.0,
+            "gain of log-likelihood by another size of a component of that momentum, beside torque noise, from which on it is refused", UNMEASURED;
+        PLAUSIBLE: f64 = 3.0, "factor of such a size, beside torque noise, up to which it is taken for a cause", UNMEASURED;
+        AS_LIKELY: f64 = 10.0, "difference of log-likelihood up to which two of them are told", UNMEASURED;
+        CALMER: f64 = 0.25, "share of the torque noise that is left with it", UNMEASURED;
+        TOLD: f64 = 6.0,
+            "deviations from 1 of the factor of a component of that momentum from which on it is wrong: a chance of 2e-9", DERIVED;
     }
     warnings: "warnings" {
         FAR: f64 = 6.0,

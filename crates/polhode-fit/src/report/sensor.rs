@@ -1,10 +1,11 @@
 //! What a fit takes to be zero, and what would explain the record better.
 
-use crate::columns::column::{Column, Unknowns};
+use crate::columns::column::{Column, Unknowns, terms_of_all};
 use crate::columns::offset::Offset;
 use crate::columns::rotor::Rotor;
-use crate::columns::sets::{axis_scales, magnet_columns, misalignments, walk_columns};
+use crate::columns::sets::{axis_scales, magnet_columns, misalignments, told_components, walk_columns};
 use crate::columns::skew::Skew;
+use crate::columns::wheel_axis::WheelAxis;
 use crate::models::equations::Equations;
 use crate::physical::coordinates::tensor;
 use crate::report::parts::quantile;
@@ -16,7 +17,7 @@ use crate::thresholds::errors::{LARGEST, LARGEST_MAGNET, LARGEST_OFFSET, RANDOM_
 use crate::thresholds::warnings::{LEFT_OUT, SENSOR};
 
 /// Errors or torques of one kind that would explain a record better.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Suspect {
     /// What they are, in words.
     pub(crate) what: &'static str,
@@ -28,6 +29,8 @@ pub(crate) struct Suspect {
     pub(crate) unit: &'static str,
     /// Gain of log-likelihood with the torque noise as it was fitted without them.
     pub(crate) gain: f64,
+    /// Columns and coordinates of the estimate as they are with them, where the deviations of the answer are to reach there.
+    pub(crate) reached: Option<Unknowns>,
 }
 
 /// What may be left out of a fit, with its columns and what to do about it.
@@ -38,23 +41,40 @@ struct Kind {
     columns: Vec<Column>,
     /// The unit of the fit in that of the report.
     unit: (f64, &'static str),
+    is_told: bool,
 }
 
+/// What it is called that there is a wheel.
+pub(crate) const ROTOR: &str = "a wheel that turns in the body";
 const FIT_IT: &str = ", unless they are fitted too, with a prior";
+const LOOK: &str = "; look at the inertia, the axis and the speed of each wheel";
+const TOLD: [&str; 3] = [
+    "an error of hx, the momentum of the wheels as the record tells it",
+    "an error of hy, the momentum of the wheels as the record tells it",
+    "an error of hz, the momentum of the wheels as the record tells it",
+];
+
 /// All of them in a record whose unit of the rates is `rms`, rad/s.
 fn kinds(weak: &WeakEstimate, stretches: &[Stretch], rms: f64) -> Vec<Kind> {
     let other = |what, columns: Vec<Column>, prior: f64| {
         let columns: Vec<Column> = columns.iter().map(|column| column.with_prior(Some(prior))).collect();
         let unit =
             columns.first().map(Column::label).map_or((1.0, ""), |label| (label.factor(rms), label.unit));
-        Kind { what, remedy: "", columns, unit }
+        Kind { what, remedy: "", columns, unit, is_told: false }
     };
     let sensor = |what, columns, prior| Kind { remedy: FIT_IT, ..other(what, columns, prior) };
     let axes = |of: fn(usize) -> Column| (0..3).map(of).collect::<Vec<Column>>();
     let delays = [1, 2].map(|k| Column::new(Skew(k), None)).to_vec();
     let walk = walk_columns(stretches, RANDOM_WALK / rms / rms.sqrt(), WALK_STEPS);
     let momentum = momentum(stretches, &tensor(&weak.x()));
-    vec![
+    let told = told_components(stretches).into_iter().filter_map(|axis| {
+        let size = terms_of_all(&weak.columns, &weak.at).input.abs();
+        let columns = vec![Column::new(WheelAxis(axis), Some(size))];
+        let kind =
+            Kind { what: TOLD[axis], remedy: LOOK, columns, unit: (1.0 / size, "of it"), is_told: true };
+        (size > 0.0).then_some(kind)
+    });
+    let all = [
         sensor("a misalignment of the axes of the sensor", misalignments(), LARGEST),
         sensor("relative errors of scale of the axes of the sensor", axis_scales(), LARGEST),
         sensor("offsets of the sensor", axes(|k| Column::new(Offset(k), None)), LARGEST_OFFSET / rms),
@@ -64,13 +84,14 @@ fn kinds(weak: &WeakEstimate, stretches: &[Stretch], rms: f64) -> Vec<Kind> {
             unit: (rms, "rad/s"),
             ..other("offsets of the sensor that change", Vec::new(), 1.0)
         },
-        other("a wheel that turns in the body", axes(|k| Column::new(Rotor(k), None)), momentum),
+        other(ROTOR, axes(|k| Column::new(Rotor(k), None)), momentum),
         other(
             "a torque that is fixed in space, as on a magnet or of a suspension",
             magnet_columns(stretches),
             LARGEST_MAGNET / rms / rms,
         ),
-    ]
+    ];
+    all.into_iter().chain(told).collect()
 }
 
 /// The median interval of the samples.
@@ -96,17 +117,32 @@ pub(crate) fn suspect(
     let tried = Tried { weak, errors, whitened: &whitened, variance };
     let each = kinds(weak, stretches, rms).into_iter().filter_map(|kind| {
         let (best, gain) = tried.with(&kind.columns)?;
-        let Kind { what, remedy, columns, unit } = kind;
+        let Kind { what, remedy, columns, unit, is_told } = kind;
         let by_chance = 0.5 * quantile(columns.len() as f64, LEFT_OUT);
         // torques of real bodies, of which some look like torque noise, are not those of the fit either
         let least = if is_noisy { by_chance.max(SENSOR) } else { by_chance };
-        let own = best.c.iter().take(columns.len());
-        let size = own.fold(0.0, |largest: f64, value| largest.max(value.abs())) * unit.0;
-        let suspect = Suspect { what, remedy, size, unit: unit.1, gain };
+        let (own, others) = best.c.split_at(columns.len());
+        let size = own.iter().fold(0.0, |largest: f64, value| largest.max(value.abs())) * unit.0;
+        let reached = is_told.then(|| Unknowns { x: best.x, c: others.to_vec() });
+        let suspect = Suspect { what, remedy, size, unit: unit.1, gain, reached };
         (gain > least).then_some((gain - columns.len() as f64, suspect))
     });
     // more unknowns explain more in any case
     each.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, suspect)| suspect)
+}
+
+/// Gain of log-likelihood by an error of one component of the momentum of wheels, the torque noise as it was fitted without it.
+pub(crate) fn gain_of_told(
+    weak: &WeakEstimate,
+    stretches: &[Stretch],
+    equations: &Equations,
+    (variance, rms): (f64, f64),
+    axis: usize,
+) -> Option<f64> {
+    let whitened = equations.with_errors(&weak.columns)?;
+    let tried = Tried { weak, errors: equations.errors(), whitened: &whitened, variance };
+    let kind = kinds(weak, stretches, rms).into_iter().find(|kind| kind.what == TOLD[axis])?;
+    Some(tried.with(&kind.columns)?.1)
 }
 
 /// An estimate beside which errors are tried.
@@ -123,7 +159,9 @@ impl Tried<'_> {
     fn with(&self, columns: &[Column]) -> Option<(Unknowns, f64)> {
         let Tried { weak, errors, whitened, variance } = *self;
         columns.first()?;
-        let place = |column: &Column| errors.iter().position(|own| own.is_alike(column));
+        let place = |column: &Column| {
+            errors.iter().position(|own| own.is_alike(column) && own.segment == column.segment)
+        };
         let first = columns.iter().map(place).collect::<Option<Vec<usize>>>()?;
         let width = errors.len() + weak.columns.len() + 6;
         let kept: Vec<usize> = first.iter().copied().chain(errors.len()..width).collect();

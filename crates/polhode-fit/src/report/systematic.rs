@@ -5,7 +5,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::columns::column::Column;
 use crate::columns::rotor::Rotor;
-use crate::columns::sets::{magnet_columns, reported_errors, walk_columns};
+use crate::columns::sets::{magnet_columns, reported_errors, told_components, walk_columns};
+use crate::columns::wheel_axis::WheelAxis;
 use crate::models::equations::Equations;
 use crate::physical::coordinates::{pair, tensor};
 use crate::report::nuisance::Systematic;
@@ -25,7 +26,8 @@ struct Line {
 pub(crate) fn errors(own: &[Column], stretches: &[Stretch], rms: f64) -> Vec<Column> {
     // of momenta the sizes alone depend on the tensor
     let lines = lines(own, &Matrix3::identity(), stretches, rms);
-    lines.iter().flat_map(|line| &line.columns).map(|(column, _)| *column).collect()
+    let told = told_components(stretches).into_iter().map(|axis| Column::new(WheelAxis(axis), None));
+    lines.iter().flat_map(|line| &line.columns).map(|(column, _)| *column).chain(told).collect()
 }
 
 /// Root mean square of the momentum of a body of the tensor `j`.

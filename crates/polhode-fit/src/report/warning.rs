@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::error::per_cent;
+use crate::error::{per_cent, with_sigma};
 use crate::physical::constraint::ActiveConstraint;
 use crate::report::nuisance::FittedTorque;
 use crate::report::parts::{Halves, Scatter};
@@ -95,6 +95,8 @@ pub enum Warning {
     MomentumTrend(InvariantTrend),
     /// The energy ω·J ω changes.
     EnergyTrend(InvariantTrend),
+    /// Wheel momenta and torques of the record are zero in all its samples: they give the tensor no size, and the fit is that of a body without.
+    ZeroInputs,
     /// Wheel momenta and torques of the record are too small to give the tensor its size, or give it a negative one.
     NoScale {
         /// One over the trace that they give, in its standard deviations.
@@ -275,6 +277,10 @@ impl fmt::Display for Warning {
             ),
             Self::MomentumTrend(trend) => torque(f, "momentum |J w|", trend),
             Self::EnergyTrend(trend) => torque(f, "energy w J w", trend),
+            Self::ZeroInputs => f.write_str(
+                "the wheel momenta and torques of the record are zero in all its samples: the fit is that of a body without any, and its size \
+                 stays unknown; if a wheel turned, give its momentum",
+            ),
             Self::NoScale { size } if *size < -NEGATIVE => write!(
                 f,
                 "the wheel momenta and torques give the tensor a negative size, by {:.0} of its deviations: their sign is wrong",
@@ -402,13 +408,6 @@ fn reckoned(f: &mut fmt::Formatter<'_>, torque: &FittedTorque) -> fmt::Result {
         Some([first, second]) => write!(f, "; without it I1/I3 would be {first:.4} and I2/I3 {second:.4}"),
         None => Ok(()),
     }
-}
-
-/// Both to two digits of the deviation.
-fn with_sigma(value: f64, sigma: f64) -> String {
-    let digits = if sigma > 0.0 { 1.0 - libm::floor(libm::log10(sigma)) } else { 2.0 };
-    let digits = digits.clamp(0.0, 15.0) as usize;
-    format!("{value:.digits$} +- {sigma:.digits$}")
 }
 
 /// `x` to four digits.

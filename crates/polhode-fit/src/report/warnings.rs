@@ -4,7 +4,8 @@ use crate::solve::weak_estimate::Convergence;
 use crate::thresholds::noise::DEVIATIONS;
 use crate::thresholds::poses::{DOUBTFUL, MOVING};
 use crate::thresholds::warnings::{APART, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, UNEXPLAINED};
-use polhode::record::Record;
+use nalgebra::Vector3;
+use polhode::record::{Record, Segment};
 
 use crate::report::attitudes::AttitudeFit;
 use crate::report::differing::Differing;
@@ -16,6 +17,13 @@ use crate::report::warning::Warning;
 use crate::settings::torque::TorqueModel;
 use crate::solve::weak_estimate::WeakEstimate;
 use crate::units::Others;
+
+/// Whether the record has wheel momenta or torques, and they are zero in all its samples.
+pub(crate) fn has_zero_inputs(record: &Record) -> bool {
+    let inputs = || record.segments.iter().filter_map(Segment::inputs);
+    let values = || inputs().flat_map(|inputs| inputs.wheel.iter().chain(&inputs.torque));
+    values().next().is_some() && values().all(|value| *value == Vector3::zeros())
+}
 
 /// What warnings are drawn from, besides the estimate.
 pub(super) struct Grounds<'a> {
@@ -69,6 +77,9 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
             other: others.best,
         });
     }
+    if has_zero_inputs(record) {
+        list.push(Warning::ZeroInputs);
+    }
     if record.merged() > 0 {
         list.push(Warning::Merged { samples: record.merged() });
     }
@@ -116,7 +127,7 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     if noise_found && density > 0.0 && e.unexplained.is_none_or(|share| share > UNEXPLAINED) {
         list.push(Warning::TorqueNoise { density, unexplained: e.unexplained });
     }
-    if let Some(&Suspect { what, remedy, size, unit, gain }) = suspect {
+    if let Some(&Suspect { what, remedy, size, unit, gain, .. }) = suspect {
         list.push(Warning::LeftOut { what, size, unit, gain, remedy });
     }
     list.extend(halves(weak, grounds.variance * misfit.max(1.0)).map(Warning::Halves));

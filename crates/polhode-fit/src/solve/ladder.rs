@@ -266,7 +266,7 @@ pub(crate) fn threshold(coefficients: usize) -> f64 {
 ///
 /// It is that of the samples: the determinants are over those without torque noise, since residuals and covariance
 /// that both shrink with the tensor tell nothing.
-fn likelihood(stretches: &[Stretch], weak: &WeakEstimate, variance: f64) -> f64 {
+pub(crate) fn likelihood(stretches: &[Stretch], weak: &WeakEstimate, variance: f64) -> f64 {
     let mut sum = weak.squares / variance;
     for part in weak.parts.iter().filter(|part| part.levels != Levels::WHITE) {
         let white = part.covariance(&stretches[part.stretch]).into_factor(Levels::WHITE);
