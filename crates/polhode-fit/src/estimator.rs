@@ -161,6 +161,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         noise: noise_of(settings, rms, variance),
         columns: &columns,
         errors: &errors,
+        rms,
     };
     // wheels and torques of the record are in units of their own
     let motion = if input.is_none() { Motion::new(&stretches, variance) } else { None };

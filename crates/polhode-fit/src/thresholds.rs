@@ -197,6 +197,8 @@ thresholds! {
             "share of the squared derivative of the rates from which torques at random are worth a warning", UNMEASURED;
         SENSOR: f64 = 30.0,
             "gain of log-likelihood from which errors of the sensor are named: at most 15 in measured tosses, at least 62 in 40 records of a sensor misaligned by 0.02", "misaligned_and_unequal_axes_are_named_where_torque_noise_takes_their_place";
+        AS_WELL: f64 = 3.0,
+            "log-likelihood, less one for each coefficient, by which an error of the sensor may be less likely than the chosen torque and explain the record as well: a share of 5 %", "a_misaligned_sensor_explains_a_record_as_well_as_a_torque";
         LEFT_OUT: f64 = 3.719_016_485_455_709,
             "standard normal deviate with a chance of 1e-4: without torque noise, the gain of log-likelihood by what the fit takes to be zero", DERIVED;
         NEGATIVE: f64 = 3.0, "deviations below zero of a size of the tensor from which on it is no noise", UNMEASURED;

@@ -155,6 +155,7 @@ pub(crate) fn report(
         whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
         torque: torque(free, information.torques.clone(), settings.torque == TorqueModel::Auto),
         models: models(&free.models, model_of(free.torque), None),
+        reading_errors: Vec::new(),
         nuisances: Vec::new(),
         systematic: Vec::new(),
         prior: agreed,

@@ -24,7 +24,7 @@ use crate::report::differing::Differing;
 use crate::report::estimate::{Estimate, Method, Residuals};
 use crate::report::identifiability::Identifiability;
 use crate::report::mirror::{mirror_sigmas, mirrored};
-use crate::report::model::models;
+use crate::report::model::{as_well, models, reading_errors};
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary};
 use crate::report::nuisances::nuisances;
 use crate::report::parts::Scatter;
@@ -149,6 +149,7 @@ impl Facts<'_> {
             whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
             torque: torques,
             models: models(&self.chosen.models, self.chosen.model, motion),
+            reading_errors: reading_errors(&self.chosen.models, self.chosen.model),
             nuisances: sensor,
             systematic: lines,
             prior: self.prior,
@@ -190,6 +191,7 @@ impl Facts<'_> {
             variance: self.variance,
             open,
             suspect: self.suspect,
+            as_well: as_well(&self.chosen.models, self.chosen.model),
             scatter: self.scatter,
             differing: self.differing,
             found: self.settings.torque == TorqueModel::Auto,

@@ -1,19 +1,17 @@
 //! What a fit takes to be zero, and what would explain the record better.
 
 use crate::columns::column::{Column, Unknowns, terms_of_all};
-use crate::columns::offset::Offset;
 use crate::columns::rotor::Rotor;
-use crate::columns::sets::{axis_scales, magnet_columns, misalignments, told_components, walk_columns};
-use crate::columns::skew::Skew;
-use crate::columns::wheel_axis::WheelAxis;
+use crate::columns::sets::{magnet_columns, told_components, walk_columns};
 use crate::models::equations::Equations;
+use crate::models::reading_error::{ReadingError, Units};
 use crate::physical::coordinates::tensor;
 use crate::report::parts::quantile;
 use crate::report::systematic::momentum;
 use crate::signal::stretch::Stretch;
 use crate::solve::stacked::Stacked;
 use crate::solve::weak_estimate::WeakEstimate;
-use crate::thresholds::errors::{LARGEST, LARGEST_MAGNET, LARGEST_OFFSET, RANDOM_WALK, WALK_STEPS};
+use crate::thresholds::errors::{LARGEST_MAGNET, RANDOM_WALK, WALK_STEPS};
 use crate::thresholds::warnings::{LEFT_OUT, SENSOR};
 
 /// Errors or torques of one kind that would explain a record better.
@@ -48,58 +46,36 @@ struct Kind {
 pub(crate) const ROTOR: &str = "a wheel that turns in the body";
 const FIT_IT: &str = ", unless they are fitted too, with a prior";
 const LOOK: &str = "; look at the inertia, the axis and the speed of each wheel";
-const TOLD: [&str; 3] = [
-    "an error of hx, the momentum of the wheels as the record tells it",
-    "an error of hy, the momentum of the wheels as the record tells it",
-    "an error of hz, the momentum of the wheels as the record tells it",
-];
-
 /// All of them in a record whose unit of the rates is `rms`, rad/s.
 fn kinds(weak: &WeakEstimate, stretches: &[Stretch], rms: f64) -> Vec<Kind> {
-    let other = |what, columns: Vec<Column>, prior: f64| {
-        let columns: Vec<Column> = columns.iter().map(|column| column.with_prior(Some(prior))).collect();
+    let of = |what, remedy, columns: Vec<Column>| {
         let unit =
             columns.first().map(Column::label).map_or((1.0, ""), |label| (label.factor(rms), label.unit));
-        Kind { what, remedy: "", columns, unit, is_told: false }
+        Kind { what, remedy, columns, unit, is_told: false }
     };
-    let sensor = |what, columns, prior| Kind { remedy: FIT_IT, ..other(what, columns, prior) };
-    let axes = |of: fn(usize) -> Column| (0..3).map(of).collect::<Vec<Column>>();
-    let delays = [1, 2].map(|k| Column::new(Skew(k), None)).to_vec();
+    let units = Units { rms, input: terms_of_all(&weak.columns, &weak.at).input };
+    let sensor = |error: ReadingError| of(error.in_words(), FIT_IT, error.columns(stretches, units));
+    let sized = |column: Column, size| column.with_prior(Some(size));
     let walk = walk_columns(stretches, RANDOM_WALK / rms / rms.sqrt(), WALK_STEPS);
     let momentum = momentum(stretches, &tensor(&weak.x()));
-    let told = told_components(stretches).into_iter().filter_map(|axis| {
-        let size = terms_of_all(&weak.columns, &weak.at).input.abs();
-        let columns = vec![Column::new(WheelAxis(axis), Some(size))];
-        let kind =
-            Kind { what: TOLD[axis], remedy: LOOK, columns, unit: (1.0 / size, "of it"), is_told: true };
-        (size > 0.0).then_some(kind)
+    let rotors = [0, 1, 2].map(|k| Column::new(Rotor(k), None));
+    let largest = LARGEST_MAGNET / rms / rms;
+    let magnet = magnet_columns(stretches).into_iter().map(|column| sized(column, largest)).collect();
+    let told = told_components(stretches).into_iter().filter(|_| units.input != 0.0).map(|axis| {
+        let error = ReadingError::Wheel(axis);
+        let (columns, unit) = (error.columns(stretches, units), (error.factor(units), "of it"));
+        Kind { what: error.in_words(), remedy: LOOK, columns, unit, is_told: true }
     });
     let all = [
-        sensor("a misalignment of the axes of the sensor", misalignments(), LARGEST),
-        sensor("relative errors of scale of the axes of the sensor", axis_scales(), LARGEST),
-        sensor("offsets of the sensor", axes(|k| Column::new(Offset(k), None)), LARGEST_OFFSET / rms),
-        sensor("delays of the axes of the sensor", delays, interval(stretches)),
-        Kind {
-            columns: walk,
-            unit: (rms, "rad/s"),
-            ..other("offsets of the sensor that change", Vec::new(), 1.0)
-        },
-        other(ROTOR, axes(|k| Column::new(Rotor(k), None)), momentum),
-        other(
-            "a torque that is fixed in space, as on a magnet or of a suspension",
-            magnet_columns(stretches),
-            LARGEST_MAGNET / rms / rms,
-        ),
+        sensor(ReadingError::Misalignment),
+        sensor(ReadingError::AxisScales),
+        sensor(ReadingError::Offsets),
+        sensor(ReadingError::Delays),
+        of("offsets of the sensor that change", "", walk),
+        of(ROTOR, "", rotors.map(|column| sized(column, momentum)).to_vec()),
+        of("a torque that is fixed in space, as on a magnet or of a suspension", "", magnet),
     ];
     all.into_iter().chain(told).collect()
-}
-
-/// The median interval of the samples.
-fn interval(stretches: &[Stretch]) -> f64 {
-    let each = stretches.iter().flat_map(|stretch| stretch.times.windows(2).map(|pair| pair[1] - pair[0]));
-    let mut each: Vec<f64> = each.collect();
-    let middle = each.len() / 2;
-    if each.is_empty() { 0.0 } else { *each.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 /// What the fit takes to be zero and the record does not: of all that it shows by more than chance brings, what explains most.
@@ -141,7 +117,9 @@ pub(crate) fn gain_of_told(
 ) -> Option<f64> {
     let whitened = equations.with_errors(&weak.columns)?;
     let tried = Tried { weak, errors: equations.errors(), whitened: &whitened, variance };
-    let kind = kinds(weak, stretches, rms).into_iter().find(|kind| kind.what == TOLD[axis])?;
+    let kind = kinds(weak, stretches, rms)
+        .into_iter()
+        .find(|kind| kind.what == ReadingError::Wheel(axis).in_words())?;
     Some(tried.with(&kind.columns)?.1)
 }
 

@@ -3,6 +3,7 @@
 use core::fmt;
 
 use crate::error::{per_cent, with_sigma};
+use crate::models::reading_error::ReadingError;
 use crate::physical::constraint::ActiveConstraint;
 use crate::report::nuisance::FittedTorque;
 use crate::report::parts::{Halves, Scatter};
@@ -104,6 +105,15 @@ pub enum Warning {
     },
     /// A torque was found and reckoned with.
     Torque(FittedTorque),
+    /// An error of the sensor, or of the momentum of wheels, explains the record without a torque as well as the torque that was chosen; the deviations reach both.
+    AsWell {
+        /// The error.
+        error: ReadingError,
+        /// Its largest component: an angle, rad, a ratio, an offset, rad/s, or a delay, s.
+        size: f64,
+        /// Log-likelihood with it less that with the torque.
+        gain: f64,
+    },
     /// A constant torque that is no part of the fit would explain the record better.
     ConstantTorque {
         /// Gain of log-likelihood with it, to first order.
@@ -290,6 +300,15 @@ impl fmt::Display for Warning {
                 "the size of the tensor is unknown: the wheel momenta and torques do not stand out of the noise",
             ),
             Self::Torque(torque) => reckoned(f, torque),
+            Self::AsWell { error, size, gain } => write!(
+                f,
+                "{}, up to {}, without any torque would explain the record as well as this torque does (log-likelihood {} by {:.1}): the \
+                 deviations reach both",
+                error.in_words(),
+                error.of_size(*size),
+                if *gain < 0.0 { "lower" } else { "higher" },
+                gain.abs()
+            ),
             Self::ConstantTorque { gain, turn } => write!(
                 f,
                 "a constant torque, which is no part of the fit, would explain the record better (log-likelihood higher by {gain:.1}); it would \

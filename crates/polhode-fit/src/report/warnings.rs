@@ -7,6 +7,7 @@ use crate::thresholds::warnings::{APART, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, 
 use nalgebra::Vector3;
 use polhode::record::{Record, Segment};
 
+use crate::models::reading_error::ReadingError;
 use crate::report::attitudes::AttitudeFit;
 use crate::report::differing::Differing;
 use crate::report::estimate::Estimate;
@@ -37,6 +38,9 @@ pub(super) struct Grounds<'a> {
     pub(super) open: Option<&'a Others>,
     /// What the fit takes to be zero and would explain the record better.
     pub(super) suspect: Option<&'a Suspect>,
+    /// The error of the record that explains it without a torque as well as the chosen torque, with its size and its log-likelihood less
+    /// that of this.
+    pub(super) as_well: Option<(ReadingError, f64, f64)>,
     /// What the free motion leaves of the samples, of a free body: mean square of a component over that of the noise, and the number of
     /// components.
     pub(super) left: Option<(f64, f64)>,
@@ -122,6 +126,7 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     }
     if found && e.torque.model != TorqueModel::None {
         list.push(Warning::Torque(e.torque.clone()));
+        list.extend(grounds.as_well.map(|(error, size, gain)| Warning::AsWell { error, size, gain }));
     }
     let density = e.per_segment.iter().map(|s| s.torque_noise).fold(0.0, f64::max);
     if noise_found && density > 0.0 && e.unexplained.is_none_or(|share| share > UNEXPLAINED) {
