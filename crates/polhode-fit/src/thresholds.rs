@@ -386,6 +386,8 @@ thresholds! {
             "deviations of the noise that the turn of the whole record must exceed; the same number of times the scatter of all readings is that of differences of neighbours", UNMEASURED;
         SAME_SIZE: f64 = 1.25, "factor within which rates and those of the attitudes are the same", UNMEASURED;
         OPEN: f64 = 10.0, "difference of log-likelihood up to which both directions explain a record", UNMEASURED;
+        TURNS: usize = 6, "most rounds in which samples of axes that move are turned back; two or three do", UNMEASURED;
+        REST: f64 = 0.01, "gain of log-likelihood by a further turn that no longer matters", UNMEASURED;
         MOVING: f64 = 15.0, "gain of log-likelihood from which axes are said to move against each other, and a torque without a model to act: a chance of 1e-6", DERIVED;
     }
     flights: "flights in a recording" {

@@ -394,7 +394,7 @@ impl fmt::Display for Warning {
             Self::MovingAxes { turn, gain } => write!(
                 f,
                 "the axes of attitudes and rates move against each other, by {turn:.2e} rad from the first sample to the last (log-likelihood \
-                 higher by {gain:.0}): fix both to the body, or compare their clocks"
+                 higher by {gain:.0}): the fit reckons with an even turn; fix both to the body, or compare their clocks"
             ),
             Self::Profile { times } => write!(
                 f,
