@@ -218,9 +218,20 @@ impl Ladder<'_> {
         if best.model == TorqueModel::Drag {
             best.equations = self.equations(&best.weak);
         }
+        // as many coefficients: the likelier of the two
+        let is_quadratic =
+            best.model == TorqueModel::Drag && gain_of(&best, &[TorqueModel::Quadratic], variance) > 0.0;
+        if is_quadratic
+            && let Ok(quadratic) = self.descent(TorqueModel::Quadratic, radius, Some(Reached::of(&best.weak)))
+        {
+            best = climb(best, self.rung(TorqueModel::Quadratic, quadratic));
+            if best.model == TorqueModel::Quadratic {
+                best.equations = self.equations(&best.weak);
+            }
+        }
         // a drag that has no part along one axis is far from one in proportion to the momentum
         let is_drag3 = match best.model {
-            TorqueModel::Drag => may_be_drag3(&best, variance),
+            TorqueModel::Drag | TorqueModel::Quadratic => may_be_drag3(&best, variance),
             TorqueModel::Constant => of_drag3 > gain,
             _ => false,
         };
@@ -319,10 +330,10 @@ fn gain_of(rung: &Rung, models: &[TorqueModel], variance: f64) -> f64 {
     squares.map_or(0.0, |squares| 0.5 * (rung.weak.squares - squares) / variance)
 }
 
-/// Whether drag about three axes may be worth a fit beside the drag of an estimate.
+/// Whether drag about three axes may be worth a fit beside the drag of an estimate, in proportion to the rate or to its square.
 fn may_be_drag3(drag: &Rung, variance: f64) -> bool {
     let count = |model| torque_columns(model).len();
-    let more = count(TorqueModel::Drag3).saturating_sub(count(TorqueModel::Drag));
-    let both = [TorqueModel::Drag3, TorqueModel::Drag];
+    let more = count(TorqueModel::Drag3).saturating_sub(count(drag.model));
+    let both = [TorqueModel::Drag3, drag.model];
     !drag.weak.has_settled() || gain_of(drag, &both, variance) > HOPE * threshold(more)
 }

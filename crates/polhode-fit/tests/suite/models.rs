@@ -262,3 +262,24 @@ fn a_misaligned_sensor_explains_a_record_as_well_as_a_torque() {
     // none was covered by the deviations of the torque alone
     assert!(named > 3 && covered > 4, "{named} {covered}");
 }
+
+/// Drag in proportion to the square of the rate is found without being asked for.
+#[test]
+fn quadratic_drag_is_found_where_it_explains_more() {
+    let mut random = Random::new(162);
+    let times = sampled(20, 60);
+    let mut found = 0;
+    for _ in 0..6 {
+        let j = turned(SHAPE, &random_rotation(&mut random));
+        let omega = random.normal_vector().normalize();
+        let rates = motion(&j, omega, &times, &|_, w| j * w * (-0.05 * w.norm()));
+        let noisy = with_noise(&rates, 3e-3, &mut random);
+        let e = fit(&Record::from_samples(&times, &noisy).unwrap(), &Settings::default()).unwrap();
+        found += usize::from(e.torque.model == TorqueModel::Quadratic);
+        let linear = motion(&j, omega, &times, &|_, w| j * w * -0.05);
+        let noisy = with_noise(&linear, 3e-3, &mut random);
+        let e = fit(&Record::from_samples(&times, &noisy).unwrap(), &Settings::default()).unwrap();
+        assert_ne!(e.torque.model, TorqueModel::Quadratic);
+    }
+    assert!(found >= 5, "{found}");
+}
