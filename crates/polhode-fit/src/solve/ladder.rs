@@ -219,9 +219,8 @@ impl Ladder<'_> {
         if best.model == TorqueModel::Drag {
             best.equations = self.equations(&best.weak);
         }
-        // as many coefficients: the likelier of the two
-        let is_quadratic =
-            best.model == TorqueModel::Drag && gain_of(&best, &[TorqueModel::Quadratic], variance) > 0.0;
+        let is_quadratic = best.model == TorqueModel::Drag
+            && gain_of(&best, &[TorqueModel::Quadratic], variance) > HOPE * FIRST;
         if is_quadratic
             && let Ok(quadratic) = self.descent(TorqueModel::Quadratic, radius, Some(Reached::of(&best.weak)))
         {
