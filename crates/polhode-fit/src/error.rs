@@ -23,6 +23,18 @@ pub struct Clash {
     pub gap: f64,
 }
 
+/// How many times as large as the record says a component of the momentum of wheels is.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToldComponent {
+    /// Its axis: 0, 1 or 2.
+    pub axis: usize,
+    /// How many times as large, the others as told.
+    pub factor: f64,
+    /// Its standard deviation.
+    pub sigma: f64,
+}
+
 impl From<FitError> for polhode::Error {
     fn from(error: FitError) -> Self {
         polhode::Error::new(error)
@@ -113,6 +125,20 @@ pub enum FitError {
         /// Sign of each.
         signs: [f64; 3],
     },
+    /// One component of the momentum of wheels is larger or smaller than what the record says.
+    #[error(
+        "the momentum of the wheels contradicts the rates: it explains them where {}; look at the inertia, the axis and the speed of each wheel",
+        so_many_times(.0)
+    )]
+    Told(Vec<ToldComponent>),
+    /// The momenta of wheels and the torques of the record are zero throughout, and a wheel explains it, or the fit of a body without any is
+    /// refused, and why.
+    #[error(
+        "the wheel momenta and torques of the record are zero in all its samples: they tell no size, and a body without wheels does not \
+         move like this; give the momenta that the wheels have, or leave the columns out if there are none{}",
+        .0.as_ref().map_or(String::new(), |error| format!(". As of a body without wheels: {error}"))
+    )]
+    ZeroInputs(Option<Box<FitError>>),
     /// Torques drive the body: its motion is not that of a free one.
     #[error(
         "the body is driven, and no tensor can be told: {}; throw the body, cut out of the record what is free, or \
@@ -363,6 +389,26 @@ fn components(order: [usize; 3], signs: [f64; 3]) -> String {
     let names =
         each.map(|(&k, sign)| format!("{}h{}", if sign < 0.0 { "-" } else { "" }, ["x", "y", "z"][k]));
     names.collect::<Vec<_>>().join(", ")
+}
+
+/// Components of a momentum with their factors.
+fn so_many_times(told: &[ToldComponent]) -> String {
+    let each = told.iter().map(|told| {
+        let ToldComponent { axis, factor, sigma } = told;
+        format!(
+            "h{} is {} times what the record says",
+            ["x", "y", "z"][(*axis).min(2)],
+            with_sigma(*factor, *sigma)
+        )
+    });
+    each.collect::<Vec<_>>().join(", or ")
+}
+
+/// Both to two digits of the deviation.
+pub(crate) fn with_sigma(value: f64, sigma: f64) -> String {
+    let digits = if sigma > 0.0 { 1.0 - libm::floor(libm::log10(sigma)) } else { 2.0 };
+    let digits = digits.clamp(0.0, 15.0) as usize;
+    format!("{value:.digits$} +- {sigma:.digits$}")
 }
 
 /// A share in per cent, to two digits.

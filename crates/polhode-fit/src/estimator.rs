@@ -27,7 +27,9 @@ use crate::report::mirror::reversed;
 use crate::report::nuisance::Agreement;
 use crate::report::parts::scatter;
 use crate::report::segments::summaries;
+use crate::report::sensor::{ROTOR, suspect};
 use crate::report::systematic::errors;
+use crate::report::warnings::has_zero_inputs;
 use crate::settings::Settings;
 use crate::settings::sensor::SensorPriors;
 use crate::settings::torque::{TorqueModel, TorqueNoise};
@@ -44,6 +46,7 @@ use crate::thresholds::test_functions::SAMPLES_PER_TEST;
 use crate::thresholds::warnings::UNCERTAIN;
 use crate::units::Motion;
 use crate::verdict::driven::{check_driven, check_inputs, check_order};
+use crate::verdict::told::check_told;
 use crate::verdict::units::open_units;
 
 /// Fits one tensor to all segments of a record.
@@ -125,7 +128,13 @@ pub(crate) fn fitted(record: &Record, settings: &Settings) -> Result<Fitted, Fit
             *mirror = reversed(record)
                 .and_then(|other| Some(Box::new(fitted(&other, settings).ok()?.estimate.principal)));
         }
-        error
+        let is_of_motion =
+            matches!(error, FitError::Unsettled { .. } | FitError::Driven { .. } | FitError::Units { .. });
+        if is_of_motion && has_zero_inputs(record) {
+            FitError::ZeroInputs(Some(Box::new(error)))
+        } else {
+            error
+        }
     })
 }
 
@@ -152,6 +161,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         noise: noise_of(settings, rms, variance),
         columns: &columns,
         errors: &errors,
+        rms,
     };
     // wheels and torques of the record are in units of their own
     let motion = if input.is_none() { Motion::new(&stretches, variance) } else { None };
@@ -167,6 +177,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
     let mut chosen = climb(&stretches, demand, variance)
         .map_err(|failure| without_estimate(failure, record, settings, &stretches, rms))?;
     check_order(&chosen, demand, &stretches, variance)?;
+    check_told(&chosen, demand, &stretches, variance, rms)?;
     let case = Case { stretches: &stretches, settings, variance, rms, is_sized: input.is_some() };
     let (supported, completed) = match case.judge(&chosen)? {
         Verdict::Unsettled => {
@@ -206,6 +217,15 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
     let bends = is_free && weak.root.try_inverse().is_some_and(is_vague);
     let spread = if bends { spread + beyond(&stretches, weak.x(), variance) } else { spread };
     let joint = Joint::new(weak, kept, deviation).ok_or_else(information)?;
+    let suspected = chosen.equations.as_ref().and_then(|own| suspect(weak, &stretches, own, (variance, rms)));
+    if has_zero_inputs(record) && suspected.as_ref().is_some_and(|found| found.what == ROTOR) {
+        return Err(FitError::ZeroInputs(None));
+    }
+    let reached = suspected.as_ref().and_then(|found| Some(joint.moved(found.reached.as_ref()?)));
+    let joint = match reached {
+        Some(more) => joint.widened(&more).ok_or_else(information)?,
+        None => joint,
+    };
     let differing = differing(weak, deviation * deviation);
     let of_choice = joint.of_tensor(&spread);
     let joint = joint.widened(&of_choice).ok_or_else(information)?;
@@ -240,6 +260,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         per_segment,
         is_exact: likeliest.is_some(),
         prior: agreed,
+        suspect: suspected.as_ref(),
         dissipation: &dissipation,
     };
     let estimate = facts.report(answer, identifiability, motion.as_ref(), open.as_ref())?;

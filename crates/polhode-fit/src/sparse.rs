@@ -94,6 +94,7 @@ fn explained(record: &Record, settings: &Settings) -> Option<Estimate> {
         without,
         models,
         alternatives,
+        moving: None,
         read: Read {
             unit,
             used: long.iter().map(|(k, s)| (*k, middle(s))).collect(),

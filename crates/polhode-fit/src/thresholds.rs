@@ -165,7 +165,14 @@ thresholds! {
         UNTOLD: f64 = 1.0,
             "deviation of a torque, in units of the rate, beyond which the record says nothing of it", "torques_that_a_record_cannot_tell_are_named";
         WIDER: f64 = 2.0,
-            "how much wider the test functions may be with which another order of a wheel's momentum explains the record", "wheels_are_fitted_to_the_bound_over_many_trials";
+            "how much wider the test functions may be with which another order, or another size of a component, of a wheel's momentum explains the record", "wheels_are_fitted_to_the_bound_over_many_trials";
+        ENORMOUS: f64 = 100.0,
+            "gain of log-likelihood by another size of a component of that momentum, beside torque noise, from which on it is refused", UNMEASURED;
+        PLAUSIBLE: f64 = 3.0, "factor of such a size, beside torque noise, up to which it is taken for a cause", UNMEASURED;
+        AS_LIKELY: f64 = 10.0, "difference of log-likelihood up to which two of them are told", UNMEASURED;
+        CALMER: f64 = 0.25, "share of the torque noise that is left with it", UNMEASURED;
+        TOLD: f64 = 6.0,
+            "deviations from 1 of the factor of a component of that momentum from which on it is wrong: a chance of 2e-9", DERIVED;
     }
     warnings: "warnings" {
         FAR: f64 = 6.0,
@@ -190,6 +197,8 @@ thresholds! {
             "share of the squared derivative of the rates from which torques at random are worth a warning", UNMEASURED;
         SENSOR: f64 = 30.0,
             "gain of log-likelihood from which errors of the sensor are named: at most 15 in measured tosses, at least 62 in 40 records of a sensor misaligned by 0.02", "misaligned_and_unequal_axes_are_named_where_torque_noise_takes_their_place";
+        AS_WELL: f64 = 3.0,
+            "log-likelihood, less one for each coefficient, by which an error of the sensor may be less likely than the chosen torque and explain the record as well: a share of 5 %", "a_misaligned_sensor_explains_a_record_as_well_as_a_torque";
         LEFT_OUT: f64 = 3.719_016_485_455_709,
             "standard normal deviate with a chance of 1e-4: without torque noise, the gain of log-likelihood by what the fit takes to be zero", DERIVED;
         NEGATIVE: f64 = 3.0, "deviations below zero of a size of the tensor from which on it is no noise", UNMEASURED;
@@ -217,7 +226,13 @@ thresholds! {
         SCALE: f64 = 0.01, "relative error of scale", UNMEASURED;
         ALIGNMENT: f64 = 0.01, "error of a right angle, rad", UNMEASURED;
         LARGEST: f64 = 0.05,
-            "deviation of misalignments, rad, and of axis scales that are tried beside a fit", UNMEASURED;
+            "plausible deviation of misalignments, rad, and of axis scales that are tried beside a fit", UNMEASURED;
+        LARGEST_OFFSET: f64 = 0.35,
+            "the same of offsets, rad/s: 20 deg/s, the largest that makers of small sensors state for one that is not calibrated", UNMEASURED;
+        RANDOM_WALK: f64 = 3e-3,
+            "the same of a random walk of the offsets, rad/s per root of a second", UNMEASURED;
+        LARGEST_MAGNET: f64 = 0.03,
+            "the same of a torque that is fixed in space, over the trace, rad/s^2", UNMEASURED;
         HELD: f64 = 1e-6, "deviation of scale and alignment while the tensor is that of a sphere", UNMEASURED;
         DELAY: f64 = 1e-3, "delay of an axis, s", UNMEASURED;
         WHEEL: f64 = 1e-3, "momentum of a wheel over that of the body", UNMEASURED;
@@ -371,6 +386,8 @@ thresholds! {
             "deviations of the noise that the turn of the whole record must exceed; the same number of times the scatter of all readings is that of differences of neighbours", UNMEASURED;
         SAME_SIZE: f64 = 1.25, "factor within which rates and those of the attitudes are the same", UNMEASURED;
         OPEN: f64 = 10.0, "difference of log-likelihood up to which both directions explain a record", UNMEASURED;
+        TURNS: usize = 6, "most rounds in which samples of axes that move are turned back; two or three do", UNMEASURED;
+        REST: f64 = 0.01, "gain of log-likelihood by a further turn that no longer matters", UNMEASURED;
         MOVING: f64 = 15.0, "gain of log-likelihood from which axes are said to move against each other, and a torque without a model to act: a chance of 1e-6", DERIVED;
     }
     flights: "flights in a recording" {

@@ -195,6 +195,26 @@ impl Estimate {
         Ok(found)
     }
 
+    /// What errors of the sensor, and of the momentum of wheels, make of the record in the place of a torque: a dict by error (`misalignment`,
+    /// `axis-scales`, `offsets`, `delays`, `wheel-x`, `wheel-y`, `wheel-z`) of
+    /// `size` (rad, a ratio, rad/s, s), `gain`, `share`, `principal`, `sigma_principal` and `held_out` as of [`models`](Self::models); empty of a fit to
+    /// attitudes.
+    #[getter]
+    fn reading_errors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let found = PyDict::new(py);
+        for one in &self.found.reading_errors {
+            let entry = PyDict::new(py);
+            entry.set_item("size", one.size)?;
+            entry.set_item("gain", one.gain)?;
+            entry.set_item("share", one.share)?;
+            entry.set_item("principal", array(py, one.principal.to_vec(), &[3])?)?;
+            entry.set_item("sigma_principal", array(py, one.sigma_principal.to_vec(), &[3])?)?;
+            entry.set_item("held_out", one.held_out)?;
+            found.set_item(one.error.to_string(), entry)?;
+        }
+        Ok(found)
+    }
+
     /// What was estimated of the sensor: a dict of the same kind.
     #[getter]
     fn nuisances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

@@ -31,7 +31,10 @@ pub(super) fn facts(error: &FitError) -> (Option<Facts>, bool) {
         FitError::Driven { .. } => (Some(Facts::driven()), true),
         FitError::Poses(PoseFault::Direction { .. }) => (Some(Facts::direction_open()), true),
         FitError::Poses(PoseFault::NotFree { .. }) => (Some(Facts::driven()), true),
-        FitError::Contradicted { .. } | FitError::Exchanged { .. } => (Some(Facts::contradicted()), true),
+        FitError::Contradicted { .. }
+        | FitError::Exchanged { .. }
+        | FitError::Told(_)
+        | FitError::ZeroInputs(_) => (Some(Facts::contradicted()), true),
         FitError::NoRotation { .. }
         | FitError::Solver(_)
         | FitError::Poses(PoseFault::NoTurn { .. } | PoseFault::HalfTurn { .. }) => (None, true),

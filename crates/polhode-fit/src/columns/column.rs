@@ -14,6 +14,7 @@ use crate::columns::scale::Scale;
 use crate::columns::skew::Skew;
 use crate::columns::viscous::Viscous;
 use crate::columns::walk::Walk;
+use crate::columns::wheel_axis::WheelAxis;
 use crate::physical::coordinates::{Coordinates, tensor};
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::Terms;
@@ -56,7 +57,8 @@ kinds!(
     Walk,
     Rotor,
     Magnet,
-    Input
+    Input,
+    WheelAxis
 );
 
 /// An unknown and the standard deviation of its prior about zero.

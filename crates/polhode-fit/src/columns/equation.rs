@@ -50,13 +50,26 @@ impl Corrected {
     pub(crate) fn residual(&self, terms: &Terms, inputs: Option<&Inputs>) -> Vector3<f64> {
         let own = terms.viscous * self.value - terms.j * self.slope - terms.constant * self.area;
         own + crossed(&self.square, &terms.j)
-            + inputs.map_or(Vector3::zeros(), |i| self.input(terms, i) * terms.input)
+            + inputs.map_or(Vector3::zeros(), |i| {
+                self.input(terms, i) * terms.input + self.by_component(terms, i, &terms.of_wheel)
+            })
     }
 
     /// Σ w (−φ' h + φ ω × h − φ τ).
     pub(crate) fn input(&self, terms: &Terms, inputs: &Inputs) -> Vector3<f64> {
         let mixed = self.mixed - terms.offset * inputs.value.transpose();
         crossed(&mixed, &Matrix3::identity()) - inputs.slope - inputs.torque
+    }
+
+    /// Σ w (−φ' h + φ ω × h), each component of h times one of the `factors`.
+    pub(crate) fn by_component(
+        &self,
+        terms: &Terms,
+        inputs: &Inputs,
+        factors: &Vector3<f64>,
+    ) -> Vector3<f64> {
+        let mixed = self.mixed - terms.offset * inputs.value.transpose();
+        crossed(&mixed, &Matrix3::from_diagonal(factors)) - inputs.slope.component_mul(factors)
     }
 }
 
@@ -74,7 +87,8 @@ pub(crate) struct Equation<'a> {
 impl Equation<'_> {
     /// What Σ w φ ω hᵀ changes by, times the factor of the inputs.
     pub(crate) fn by_wheel(&self, mixed: Matrix3<f64>) -> Vector3<f64> {
-        crossed(&mixed, &Matrix3::identity()) * self.terms.input
+        let Terms { input, of_wheel, .. } = self.terms;
+        crossed(&mixed, &Matrix3::identity()) * *input + crossed(&mixed, &Matrix3::from_diagonal(of_wheel))
     }
 
     /// The derivative with respect to an error of scale or alignment, by which P changes by `q`.

@@ -23,3 +23,4 @@ pub(crate) mod skew;
 pub(crate) mod squared;
 pub(crate) mod viscous;
 pub(crate) mod walk;
+pub(crate) mod wheel_axis;

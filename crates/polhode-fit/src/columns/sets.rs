@@ -14,7 +14,7 @@ use crate::columns::viscous::Viscous;
 use crate::columns::walk::Walk;
 use crate::settings::sensor::SensorPriors;
 use crate::settings::torque::TorqueModel;
-use crate::signal::stretch::Stretch;
+use crate::signal::stretch::{KnownInputs, Stretch};
 use crate::thresholds::walk::SHORTEST;
 
 /// The columns of a torque.
@@ -86,6 +86,17 @@ pub(crate) fn magnet_columns(stretches: &[Stretch]) -> Vec<Column> {
         each.map(move |magnet| Column::new(magnet, None).of_segment(segment))
     };
     stretches.iter().flat_map(of).collect()
+}
+
+/// Components of the momentum of wheels, by their axes, whose error can be told from the size of the tensor: another one is not zero
+/// either, or a torque.
+pub(crate) fn told_components(stretches: &[Stretch]) -> Vec<usize> {
+    let inputs = || stretches.iter().filter_map(|stretch| stretch.inputs.as_ref());
+    let turns =
+        |axis: &usize| inputs().any(|inputs: &KnownInputs| inputs.wheel.iter().any(|h| h[*axis] != 0.0));
+    let is_pushed = inputs().flat_map(|inputs| &inputs.torque).any(|torque| torque.amax() > 0.0);
+    let turning: Vec<usize> = (0..3).filter(turns).collect();
+    if turning.len() + usize::from(is_pushed) > 1 { turning } else { Vec::new() }
 }
 
 #[cfg(test)]

@@ -37,7 +37,7 @@ impl Effect for Skew {
         let axis = self.0;
         let Some(inverse) = terms.j.try_inverse() else { return Some(Box::new(|_, _| Vector3::zeros())) };
         Some(Box::new(move |group: &Group, w: &Vector3<f64>| {
-            let momentum = terms.j * w + group.wheel * terms.input;
+            let momentum = terms.j * w + terms.wheel(&group.wheel);
             let drag = terms.viscous * w + terms.j * w * (w.norm() * terms.quadratic);
             let slope = inverse * (terms.constant - w.cross(&momentum) - drag);
             Vector3::ith(axis, slope[axis])

@@ -41,8 +41,17 @@ pub(crate) struct Alternatives {
     pub(crate) drag: Option<Found>,
     /// Over the trace and the squared unit of the rate, axes of the tensor.
     pub(crate) constant: Found,
-    /// By how much the axes turn from the first sample of a stretch to its last, rad; without either kind of sample `None`.
-    pub(crate) moving: Option<Found>,
+    /// The likelier of both kinds of axes that move; without either kind of sample `None`.
+    pub(crate) moving: Option<MovingAxes>,
+    of_attitudes: Option<Found>,
+    of_rates: Option<Found>,
+}
+
+/// By how much the axes of one kind of sample turn from the first sample of a stretch to its last, rad.
+#[derive(Clone, Debug)]
+pub(crate) struct MovingAxes {
+    pub(crate) found: Found,
+    pub(crate) is_of_rates: bool,
 }
 
 impl Alternatives {
@@ -61,10 +70,19 @@ impl Alternatives {
         }
         let of = |columns: core::ops::Range<usize>| found(&information, &gradient, columns);
         // it may be the one or the other that moves on the body
-        let moving = MOVING.into_iter().filter(|_| model.is_aligned).filter_map(of);
-        let moving = moving.max_by(|a, b| a.gain.total_cmp(&b.gain));
+        let of_axes = |columns| if model.is_aligned { of(columns) } else { None };
+        let [of_attitudes, of_rates] = MOVING.map(of_axes);
+        let each = [&of_attitudes, &of_rates].into_iter().zip([false, true]);
+        let each =
+            each.filter_map(|(found, is_of_rates)| Some(MovingAxes { found: found.clone()?, is_of_rates }));
+        let moving = each.max_by(|a, b| a.found.gain.total_cmp(&b.found.gain));
         let drag = if model.drag.is_none() { Some(of(DRAG)?) } else { None };
-        Some(Alternatives { drag, constant: of(CONSTANT)?, moving })
+        Some(Alternatives { drag, constant: of(CONSTANT)?, moving, of_attitudes, of_rates })
+    }
+
+    /// What the axes of one kind of sample would bring if they moved.
+    pub(crate) fn of_axes(&self, of_rates: bool) -> Option<&Found> {
+        if of_rates { self.of_rates.as_ref() } else { self.of_attitudes.as_ref() }
     }
 }
 

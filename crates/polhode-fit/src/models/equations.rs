@@ -95,10 +95,23 @@ impl Equations {
     /// Those of several models together.
     pub(crate) fn of_all(&self, models: &[TorqueModel]) -> OfModel {
         let own: Vec<Column> = models.iter().copied().flat_map(torque_columns).collect();
-        let is_own = |k: usize| own.iter().any(|column| column.is_alike(&self.columns[k]));
+        self.with(self.errors..self.errors + self.torques, &own)
+    }
+
+    /// Those of errors of the record with their priors, without a torque; `None` where the fit has these errors, or they are not among those
+    /// that it takes to be zero.
+    pub(crate) fn of_errors(&self, own: &[Column]) -> Option<OfModel> {
+        let is_here = |column: &Column| self.errors().iter().any(|other| other.is_alike(column));
+        own.iter().all(is_here).then(|| self.with(0..self.errors, own))
+    }
+
+    /// Those with the columns that every model has, and of a range of the others those alike to `own`, with the priors of these.
+    fn with(&self, range: core::ops::Range<usize>, own: &[Column]) -> OfModel {
+        let alike = |k: &usize| own.iter().find(|column| column.is_alike(&self.columns[*k])).copied();
         let common = self.errors + self.torques;
         let (kept, left): (Vec<usize>, Vec<usize>) =
-            (0..self.columns.len()).partition(|&k| k >= common || (k >= self.errors && is_own(k)));
+            (0..self.columns.len()).partition(|k| *k >= common || (range.contains(k) && alike(k).is_some()));
+        let prior = |k: &usize| if *k < common { alike(k)?.prior } else { self.columns[*k].prior };
         let width = self.columns.len() + 6;
         let row = |row: &[f64]| {
             let gone: f64 = left.iter().map(|&k| row[k] * self.origin.c[k]).sum();
@@ -110,7 +123,7 @@ impl Equations {
             ..*segment
         };
         OfModel {
-            columns: kept.iter().map(|&k| self.columns[k]).collect(),
+            columns: kept.iter().map(|k| self.columns[*k].with_prior(prior(k))).collect(),
             origin: Unknowns { x: self.origin.x, c: kept.iter().map(|&k| self.origin.c[k]).collect() },
             segments: self.segments.iter().map(of_segment).collect(),
             deviation: self.deviation,

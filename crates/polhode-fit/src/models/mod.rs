@@ -1,6 +1,8 @@
-//! The torque models beside each other: what each makes of the tensor, how likely it is, and how far the answer rests on the choice.
+//! The torque models, and errors of the record in the place of a torque, beside each other: what each makes of the tensor, how likely it is,
+//! and how far the answer rests on the choice.
 
 pub(crate) mod equations;
+pub(crate) mod reading_error;
 pub(crate) mod weighed;
 
 use crate::settings::torque::TorqueModel;

@@ -3,9 +3,11 @@
 use nalgebra::SymmetricEigen;
 
 use crate::columns::sets::torque_columns;
+use crate::models::reading_error::ReadingError;
 use crate::physical::coordinates::{Coordinates, Form};
 use crate::settings::torque::TorqueModel;
 use crate::solve::ladder::threshold;
+use crate::thresholds::warnings::SENSOR;
 
 /// Distance of the tensor of a needle from that of a sphere, shares of the trace: no other body's is larger.
 const FARTHEST: f64 = 0.408_248_290_463_863; // 1/√6
@@ -14,6 +16,8 @@ const FARTHEST: f64 = 0.408_248_290_463_863; // 1/√6
 #[derive(Clone, Debug)]
 pub(crate) struct Weighed {
     pub(crate) model: TorqueModel,
+    /// An error of the record, which takes the place of a torque, with its largest component: rad, a ratio, rad/s, s.
+    pub(crate) error: Option<(ReadingError, f64)>,
     /// Log-likelihood less that without a torque.
     pub(crate) gain: f64,
     pub(crate) x: Coordinates,
@@ -21,6 +25,19 @@ pub(crate) struct Weighed {
     pub(crate) factor: Form,
     /// Mean square of the equations of each segment, over their noise, at what the other segments say; of several segments.
     pub(crate) held_out: Option<f64>,
+}
+
+impl Weighed {
+    /// Whether it is this torque, and no error of the record.
+    pub(crate) fn is_torque(&self, model: TorqueModel) -> bool {
+        self.model == model && self.error.is_none()
+    }
+
+    /// Its log-likelihood less one for every coefficient.
+    pub(crate) fn score(&self) -> f64 {
+        let count = self.error.map_or_else(|| torque_columns(self.model).len(), |(error, _)| error.count());
+        self.gain - count as f64
+    }
 }
 
 /// The gain of log-likelihood that is asked of a model before it is chosen instead of none.
@@ -33,17 +50,20 @@ pub(crate) fn asked(model: TorqueModel) -> f64 {
 
 /// The share of each model: its likelihood beside that of the others, each less one for every coefficient. The choice itself asks for more:
 /// what it leaves out is not refuted by that. Drag about the axes of the sensor has one where a drag was chosen, as only then the choice asks
-/// for it: else a turn of the sensor would change what is said of a free body.
+/// for it: else a turn of the sensor would change what is said of a free body. Errors of the record have one where a torque
+/// was chosen, as only then the record asks for one of the two, or where they explain far more than chance.
 ///
 /// Source: H. Akaike, Biometrika 66 (1979) 237; K. P. Burnham and D. R. Anderson, Model
 /// Selection and Multimodel Inference, Springer (2002), section 2.9.
 pub(crate) fn shares(models: &[Weighed], chosen: TorqueModel) -> Vec<f64> {
     let is_asked = |one: &Weighed| {
+        if one.error.is_some() {
+            return chosen != TorqueModel::None || one.gain > SENSOR;
+        }
         let drags = [TorqueModel::Drag, TorqueModel::Quadratic, TorqueModel::Drag3];
         one.model != TorqueModel::Drag3 || drags.contains(&chosen)
     };
-    let coefficients = |one: &Weighed| torque_columns(one.model).len() as f64;
-    let score = |one: &Weighed| if is_asked(one) { one.gain - coefficients(one) } else { f64::NEG_INFINITY };
+    let score = |one: &Weighed| if is_asked(one) { one.score() } else { f64::NEG_INFINITY };
     let best = models.iter().map(score).fold(f64::NEG_INFINITY, f64::max);
     let weights: Vec<f64> = models.iter().map(|one| libm::exp(score(one) - best)).collect();
     let sum: f64 = weights.iter().sum();
@@ -66,9 +86,9 @@ fn of_bodies(one: &Weighed) -> Option<(Coordinates, Form)> {
 /// J. A. Hoeting et al., Statistical Science 14 (1999) 382, equation (3).
 pub(crate) fn spread(models: &[Weighed], chosen: TorqueModel) -> Form {
     let mut sum = Form::zeros();
-    let Some(own) = models.iter().find(|one| one.model == chosen).and_then(of_bodies) else { return sum };
-    for (other, share) in models.iter().zip(shares(models, chosen)).filter(|(other, _)| other.model != chosen)
-    {
+    let Some(own) = models.iter().find(|one| one.is_torque(chosen)).and_then(of_bodies) else { return sum };
+    let others = models.iter().zip(shares(models, chosen)).filter(|(other, _)| !other.is_torque(chosen));
+    for (other, share) in others {
         let Some(other) = of_bodies(other) else { continue };
         let apart = other.0 - own.0;
         let SymmetricEigen { eigenvectors: v, eigenvalues } = SymmetricEigen::new(other.1 - own.1);
@@ -84,7 +104,7 @@ mod tests {
 
     fn of(model: TorqueModel, gain: f64, x: f64, deviation: f64) -> Weighed {
         let x = Coordinates::new(x, 0.0, 0.0, 0.0, 0.0);
-        Weighed { model, gain, x, factor: Form::identity() * deviation, held_out: None }
+        Weighed { model, error: None, gain, x, factor: Form::identity() * deviation, held_out: None }
     }
 
     /// A coefficient that gains one weighs as much as none.

@@ -16,6 +16,7 @@ use crate::models::weighed::Weighed;
 use crate::physical::coordinates::{Coordinates, Form, coordinates, tensor};
 use crate::poses::clean::{jumps, turns};
 use crate::poses::fault::PoseFault;
+use crate::poses::moving::{Moving, with_moving_axes};
 use crate::poses::record::{PoseSegment, Poses};
 use crate::settings::Settings;
 use crate::thresholds::noise::{DEVIATIONS, LEAST};
@@ -61,6 +62,8 @@ pub(crate) struct Free {
     pub(crate) models: Vec<Weighed>,
     /// What a torque or moving axes would bring; `None` where the samples do not determine the model.
     pub(crate) alternatives: Option<Alternatives>,
+    /// How the axes of rates and attitudes turn against each other, where they do.
+    pub(crate) moving: Option<Moving>,
     pub(crate) read: Read,
     /// The information on the tensor at the steady spins that explain the samples nearly as well, if they do: a wobble within the noise
     /// would pass for one that tells the tensor.
@@ -105,11 +108,16 @@ impl Free {
         let turn_between = read.largest_turn;
         let not_free = |residual| PoseFault::NotFree { residual, noise: Some(noise), turn: turn_between };
         let moved = |drag| Some(Moved::new(follow(&tracks, first, turn, levels, drag)?));
-        let Found { moved, torque, gain, without, models } =
-            with_torque(settings.torque, moved).ok_or_else(|| not_free(1.0))?;
+        let found = with_torque(settings.torque, moved).ok_or_else(|| not_free(1.0))?;
+        let again = |tracks: &[Track]| {
+            let moved = |drag| Some(Moved::new(follow(tracks, first, turn, levels, drag)?));
+            with_torque(settings.torque, moved)
+        };
+        let (found, moving) = with_moving_axes(&tracks, found, again);
+        let Found { moved, torque, gain, without, models } = found;
         let Moved { followed, alternatives } = moved;
         let steady = steady_within_noise(&followed);
-        Ok(Free { followed, torque, gain, without, models, alternatives, read, steady })
+        Ok(Free { followed, torque, gain, without, models, alternatives, moving, read, steady })
     }
 
     /// Mean square of what is left of the attitudes, or of rates alone, over their noise, where that is known.

@@ -5,4 +5,5 @@ pub(crate) mod error;
 pub(crate) mod fault;
 pub(crate) mod fit;
 pub(crate) mod free;
+pub(crate) mod moving;
 pub(crate) mod record;

@@ -36,8 +36,9 @@ pub struct AlignmentFit {
     pub turn: UnitQuaternion<f64>,
     /// Standard deviations of the turn about each axis of the attitudes, rad.
     pub sigma: [f64; 3],
-    /// By how much the axes turn against each other from the first sample of a segment to its last, rad, by one step of least squares.
+    /// By how much the axes turn against each other from the first sample of a segment to its last, rad: fitted where the
+    /// record shows it, else by one step of least squares.
     pub moving: f64,
-    /// Gain of log-likelihood with that.
+    /// Gain of log-likelihood with that, by one step of least squares.
     pub moving_gain: f64,
 }

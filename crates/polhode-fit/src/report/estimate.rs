@@ -8,7 +8,7 @@ use crate::physical::certificate::Certificate;
 use crate::physical::constraint::ActiveConstraint;
 use crate::report::attitudes::AttitudeFit;
 use crate::report::identifiability::Identifiability;
-use crate::report::model::ModelFit;
+use crate::report::model::{ErrorFit, ModelFit};
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, Systematic};
 use crate::report::torque_free::{InvariantTrend, Whiteness};
 use crate::report::warning::Warning;
@@ -129,6 +129,8 @@ pub struct Estimate {
     /// Each model of the torque beside it; of a likelihood on the exact motion those that it has. Where the fit has chosen the model, the deviations
     /// of the answer include how far apart these are, in proportion to their shares.
     pub models: Vec<ModelFit>,
+    /// What errors of the sensor, and of the momentum of wheels as it is told, make of the record in the place of a torque; of rates alone.
+    pub reading_errors: Vec<ErrorFit>,
     /// What was estimated of the sensor, each with its prior.
     pub nuisances: Vec<Nuisance>,
     /// What errors of the sensor that the fit takes to be zero would do to the moments.

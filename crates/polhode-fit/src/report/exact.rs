@@ -155,6 +155,7 @@ pub(crate) fn report(
         whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
         torque: torque(free, information.torques.clone(), settings.torque == TorqueModel::Auto),
         models: models(&free.models, model_of(free.torque), None),
+        reading_errors: Vec::new(),
         nuisances: Vec::new(),
         systematic: Vec::new(),
         prior: agreed,
@@ -229,6 +230,10 @@ fn information(settings: &Settings, free: &Free) -> Result<Information, FitError
             all.information.cholesky().map_or(f64::MAX, |c| c.inverse()[(COMMON - 1, COMMON - 1)].sqrt());
         let each = torque_columns(TorqueModel::Drag).into_iter();
         torques.extend(each.map(|column| Nuisance::new(&column, drag, sigma, free.read.unit)));
+    }
+    if let Some(moving) = &free.moving {
+        let covariance = tensor.cholesky().ok_or_else(singular)?.inverse() + moving.spread;
+        tensor = covariance.cholesky().ok_or_else(singular)?.inverse();
     }
     let curvature = tensor;
     // samples that leave a number open have no covariance, and are refused for it
@@ -383,12 +388,15 @@ fn attitudes(
 
 fn alignment(free: &Free, information: &Information) -> AlignmentFit {
     let covariance = information.all.information.cholesky().map(|c| c.inverse());
-    let moving = free.alternatives.as_ref().and_then(|found| found.moving.as_ref());
+    let step = free.alternatives.as_ref().and_then(|all| all.moving.as_ref()).map(|moving| &moving.found);
+    let step =
+        step.map_or((0.0, 0.0), |found| (Vector3::from_column_slice(&found.values).norm(), found.gain));
+    let (moving, moving_gain) = free.moving.as_ref().map_or(step, |own| (own.turn.norm(), own.gain));
     let turn: Quat<f64> = free.followed.model.alignment;
     AlignmentFit {
         turn: turn.into(),
         sigma: [5, 6, 7].map(|k| covariance.map_or(f64::INFINITY, |c| c[(k, k)].sqrt())),
-        moving: moving.map_or(0.0, |found| found.values.iter().map(|v| v * v).sum::<f64>().sqrt()),
-        moving_gain: moving.map_or(0.0, |found| found.gain),
+        moving,
+        moving_gain,
     }
 }

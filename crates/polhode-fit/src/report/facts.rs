@@ -24,7 +24,7 @@ use crate::report::differing::Differing;
 use crate::report::estimate::{Estimate, Method, Residuals};
 use crate::report::identifiability::Identifiability;
 use crate::report::mirror::{mirror_sigmas, mirrored};
-use crate::report::model::models;
+use crate::report::model::{as_well, models, reading_errors};
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary};
 use crate::report::nuisances::nuisances;
 use crate::report::parts::Scatter;
@@ -64,6 +64,8 @@ pub(crate) struct Facts<'a> {
     /// Whether the weak estimate was moved to the largest likelihood on the exact motion with wheels.
     pub(crate) is_exact: bool,
     pub(crate) prior: Option<Agreement>,
+    /// What the fit takes to be zero and would explain the record better.
+    pub(crate) suspect: Option<&'a Suspect>,
     pub(crate) dissipation: &'a [Dissipation],
 }
 
@@ -114,7 +116,7 @@ impl Facts<'_> {
         let systematic = |equations: &Equations| {
             systematic(weak, equations, self.stretches, &v, &moments.into(), self.variance, self.rms)
         };
-        let (lines, suspect) = self.chosen.equations.as_ref().map(systematic).unwrap_or_default();
+        let lines = self.chosen.equations.as_ref().map(systematic).unwrap_or_default();
         let mut estimate = Estimate {
             principal: [moments[0], moments[1], moments[2]],
             sigma_principal,
@@ -147,6 +149,7 @@ impl Facts<'_> {
             whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
             torque: torques,
             models: models(&self.chosen.models, self.chosen.model, motion),
+            reading_errors: reading_errors(&self.chosen.models, self.chosen.model),
             nuisances: sensor,
             systematic: lines,
             prior: self.prior,
@@ -162,7 +165,7 @@ impl Facts<'_> {
         let is_free = free_body && !weak.has_torque_noise();
         let left = motions.as_ref().map(|motions| motions.left).filter(|_| is_free);
         let size = self.size(&together, &at).map(|(_, size)| size);
-        let grounds = Grounds { size, ..self.grounds(open, suspect, left) };
+        let grounds = Grounds { size, ..self.grounds(open, left) };
         estimate.warnings = warnings(&estimate, &grounds);
         Ok(estimate)
     }
@@ -179,12 +182,7 @@ impl Facts<'_> {
     }
 
     /// What warnings are drawn from.
-    fn grounds<'b>(
-        &'b self,
-        open: Option<&'b Others>,
-        suspect: Option<Suspect>,
-        left: Option<(f64, f64)>,
-    ) -> Grounds<'b> {
+    fn grounds<'b>(&'b self, open: Option<&'b Others>, left: Option<(f64, f64)>) -> Grounds<'b> {
         Grounds {
             left,
             record: self.record,
@@ -192,7 +190,8 @@ impl Facts<'_> {
             misfit: self.misfit,
             variance: self.variance,
             open,
-            suspect,
+            suspect: self.suspect,
+            as_well: as_well(&self.chosen.models, self.chosen.model),
             scatter: self.scatter,
             differing: self.differing,
             found: self.settings.torque == TorqueModel::Auto,

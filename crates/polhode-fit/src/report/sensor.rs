@@ -1,19 +1,21 @@
 //! What a fit takes to be zero, and what would explain the record better.
 
-use crate::columns::column::Column;
-use crate::columns::offset::Offset;
+use crate::columns::column::{Column, Unknowns, terms_of_all};
 use crate::columns::rotor::Rotor;
-use crate::columns::sets::{axis_scales, magnet_columns, misalignments};
-use crate::columns::skew::Skew;
+use crate::columns::sets::{magnet_columns, told_components, walk_columns};
+use crate::models::equations::Equations;
+use crate::models::reading_error::{ReadingError, Units};
+use crate::physical::coordinates::tensor;
 use crate::report::parts::quantile;
+use crate::report::systematic::momentum;
 use crate::signal::stretch::Stretch;
 use crate::solve::stacked::Stacked;
 use crate::solve::weak_estimate::WeakEstimate;
-use crate::thresholds::errors::LARGEST;
+use crate::thresholds::errors::{LARGEST_MAGNET, RANDOM_WALK, WALK_STEPS};
 use crate::thresholds::warnings::{LEFT_OUT, SENSOR};
 
 /// Errors or torques of one kind that would explain a record better.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Suspect {
     /// What they are, in words.
     pub(crate) what: &'static str,
@@ -25,93 +27,132 @@ pub(crate) struct Suspect {
     pub(crate) unit: &'static str,
     /// Gain of log-likelihood with the torque noise as it was fitted without them.
     pub(crate) gain: f64,
+    /// Columns and coordinates of the estimate as they are with them, where the deviations of the answer are to reach there.
+    pub(crate) reached: Option<Unknowns>,
 }
 
 /// What may be left out of a fit, with its columns and what to do about it.
 struct Kind {
     what: &'static str,
     remedy: &'static str,
+    /// Each with the deviation that is plausible for it.
     columns: Vec<Column>,
-    /// Standard deviation of each column.
-    prior: Option<f64>,
+    /// The unit of the fit in that of the report.
+    unit: (f64, &'static str),
+    is_told: bool,
 }
 
+/// What it is called that there is a wheel.
+pub(crate) const ROTOR: &str = "a wheel that turns in the body";
 const FIT_IT: &str = ", unless they are fitted too, with a prior";
-
-fn kinds(stretches: &[Stretch], errors: &[Column]) -> Vec<Kind> {
-    let sensor = |what, columns| Kind { what, remedy: FIT_IT, columns, prior: None };
-    let other = |what, columns| Kind { remedy: "", ..sensor(what, columns) };
-    let axes = |what, columns| Kind { prior: Some(LARGEST), ..sensor(what, columns) };
-    let walk = errors.iter().copied().filter(|column| column.label().name.starts_with("walk"));
-    vec![
-        axes("a misalignment of the axes of the sensor", misalignments()),
-        axes("relative errors of scale of the axes of the sensor", axis_scales()),
-        sensor("offsets of the sensor", (0..3).map(|k| Column::new(Offset(k), None)).collect()),
-        sensor("delays of the axes of the sensor", [1, 2].map(|k| Column::new(Skew(k), None)).to_vec()),
-        other("offsets of the sensor that change", walk.collect()),
-        other("a wheel that turns in the body", (0..3).map(|k| Column::new(Rotor(k), None)).collect()),
-        other(
-            "a torque that is fixed in space, as on a magnet or of a suspension",
-            magnet_columns(stretches),
-        ),
-    ]
+const LOOK: &str = "; look at the inertia, the axis and the speed of each wheel";
+/// All of them in a record whose unit of the rates is `rms`, rad/s.
+fn kinds(weak: &WeakEstimate, stretches: &[Stretch], rms: f64) -> Vec<Kind> {
+    let of = |what, remedy, columns: Vec<Column>| {
+        let unit =
+            columns.first().map(Column::label).map_or((1.0, ""), |label| (label.factor(rms), label.unit));
+        Kind { what, remedy, columns, unit, is_told: false }
+    };
+    let units = Units { rms, input: terms_of_all(&weak.columns, &weak.at).input };
+    let sensor = |error: ReadingError| of(error.in_words(), FIT_IT, error.columns(stretches, units));
+    let sized = |column: Column, size| column.with_prior(Some(size));
+    let walk = walk_columns(stretches, RANDOM_WALK / rms / rms.sqrt(), WALK_STEPS);
+    let momentum = momentum(stretches, &tensor(&weak.x()));
+    let rotors = [0, 1, 2].map(|k| Column::new(Rotor(k), None));
+    let largest = LARGEST_MAGNET / rms / rms;
+    let magnet = magnet_columns(stretches).into_iter().map(|column| sized(column, largest)).collect();
+    let told = told_components(stretches).into_iter().filter(|_| units.input != 0.0).map(|axis| {
+        let error = ReadingError::Wheel(axis);
+        let (columns, unit) = (error.columns(stretches, units), (error.factor(units), "of it"));
+        Kind { what: error.in_words(), remedy: LOOK, columns, unit, is_told: true }
+    });
+    let all = [
+        sensor(ReadingError::Misalignment),
+        sensor(ReadingError::AxisScales),
+        sensor(ReadingError::Offsets),
+        sensor(ReadingError::Delays),
+        of("offsets of the sensor that change", "", walk),
+        of(ROTOR, "", rotors.map(|column| sized(column, momentum)).to_vec()),
+        of("a torque that is fixed in space, as on a magnet or of a suspension", "", magnet),
+    ];
+    all.into_iter().chain(told).collect()
 }
 
 /// What the fit takes to be zero and the record does not: of all that it shows by more than chance brings, what explains most.
 ///
-/// `whitened` are the rows of each stretch with the columns `columns`, of which the first `errors` are those that the fit takes
-/// to be zero; `rms` is the unit rate, rad/s.
+/// `equations` are those of the estimate; `rms` is the unit rate, rad/s.
 pub(crate) fn suspect(
     weak: &WeakEstimate,
     stretches: &[Stretch],
-    columns: &[Column],
-    errors: usize,
-    whitened: &[Vec<f64>],
+    equations: &Equations,
     (variance, rms): (f64, f64),
 ) -> Option<Suspect> {
+    let errors = equations.errors();
+    let whitened = equations.with_errors(&weak.columns)?;
     let is_noisy = weak.has_torque_noise();
-    let kinds = kinds(stretches, &columns[..errors]).into_iter();
-    let each = kinds.filter_map(|kind| {
-        let Kind { what, remedy, prior, .. } = kind;
-        let label = kind.columns.first()?.label();
-        let place = |column: &Column| columns[..errors].iter().position(|own| own.is_alike(column));
-        let first = kind.columns.iter().map(place).collect::<Option<Vec<usize>>>()?;
-        let (size, gain) = gain_of(weak, columns, (&first, prior), errors, whitened, variance)?;
-        let by_chance = 0.5 * quantile(first.len() as f64, LEFT_OUT);
+    let tried = Tried { weak, errors, whitened: &whitened, variance };
+    let each = kinds(weak, stretches, rms).into_iter().filter_map(|kind| {
+        let (best, gain) = tried.with(&kind.columns)?;
+        let Kind { what, remedy, columns, unit, is_told } = kind;
+        let by_chance = 0.5 * quantile(columns.len() as f64, LEFT_OUT);
         // torques of real bodies, of which some look like torque noise, are not those of the fit either
         let least = if is_noisy { by_chance.max(SENSOR) } else { by_chance };
-        let size = size * label.factor(rms);
-        let suspect = Suspect { what, remedy, size, unit: label.unit, gain };
-        (gain > least).then_some((gain - first.len() as f64, suspect))
+        let (own, others) = best.c.split_at(columns.len());
+        let size = own.iter().fold(0.0, |largest: f64, value| largest.max(value.abs())) * unit.0;
+        let reached = is_told.then(|| Unknowns { x: best.x, c: others.to_vec() });
+        let suspect = Suspect { what, remedy, size, unit: unit.1, gain, reached };
+        (gain > least).then_some((gain - columns.len() as f64, suspect))
     });
     // more unknowns explain more in any case
     each.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, suspect)| suspect)
 }
 
-/// The largest of the errors `first`, each with a `prior`, and the gain of log-likelihood by all of them.
-fn gain_of(
+/// Gain of log-likelihood by an error of one component of the momentum of wheels, the torque noise as it was fitted without it.
+pub(crate) fn gain_of_told(
     weak: &WeakEstimate,
-    columns: &[Column],
-    (first, prior): (&[usize], Option<f64>),
-    errors: usize,
-    whitened: &[Vec<f64>],
+    stretches: &[Stretch],
+    equations: &Equations,
+    (variance, rms): (f64, f64),
+    axis: usize,
+) -> Option<f64> {
+    let whitened = equations.with_errors(&weak.columns)?;
+    let tried = Tried { weak, errors: equations.errors(), whitened: &whitened, variance };
+    let kind = kinds(weak, stretches, rms)
+        .into_iter()
+        .find(|kind| kind.what == ReadingError::Wheel(axis).in_words())?;
+    Some(tried.with(&kind.columns)?.1)
+}
+
+/// An estimate beside which errors are tried.
+struct Tried<'a> {
+    weak: &'a WeakEstimate,
+    /// The columns of the rows that are errors, which are the first.
+    errors: &'a [Column],
+    whitened: &'a [Vec<f64>],
     variance: f64,
-) -> Option<(f64, f64)> {
-    let kept: Vec<usize> = first.iter().copied().chain(errors..columns.len() + 6).collect();
-    let rows: Vec<Vec<f64>> = whitened
-        .iter()
-        .map(|rows| {
-            rows.chunks_exact(columns.len() + 6).flat_map(|row| kept.iter().map(|&k| row[k])).collect()
-        })
-        .collect();
-    let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
-    let tried = first.iter().map(|&k| columns[k].with_prior(prior));
-    let with: Vec<Column> = tried.chain(weak.columns.iter().copied()).collect();
-    let mut at = weak.at.clone();
-    at.c = vec![0.0; first.len()].into_iter().chain(at.c).collect();
-    let stacked = Stacked::new(&rows, &with, &at, variance.sqrt());
-    let gain = 0.5 * (weak.squares - stacked.squares) / variance;
-    let best = stacked.minimiser()?;
-    let size = best.c[..first.len()].iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-    Some((size, gain))
+}
+
+impl Tried<'_> {
+    /// Where everything is best with these errors, which come before the columns of the estimate; and the gain of log-likelihood.
+    fn with(&self, columns: &[Column]) -> Option<(Unknowns, f64)> {
+        let Tried { weak, errors, whitened, variance } = *self;
+        columns.first()?;
+        let place = |column: &Column| {
+            errors.iter().position(|own| own.is_alike(column) && own.segment == column.segment)
+        };
+        let first = columns.iter().map(place).collect::<Option<Vec<usize>>>()?;
+        let width = errors.len() + weak.columns.len() + 6;
+        let kept: Vec<usize> = first.iter().copied().chain(errors.len()..width).collect();
+        let pick = |rows: &Vec<f64>| -> Vec<f64> {
+            rows.chunks_exact(width).flat_map(|row| kept.iter().map(|&k| row[k])).collect()
+        };
+        let rows: Vec<Vec<f64>> = whitened.iter().map(pick).collect();
+        let rows: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+        let with: Vec<Column> = columns.iter().chain(&weak.columns).copied().collect();
+        let mut at = weak.at.clone();
+        at.c = vec![0.0; first.len()].into_iter().chain(at.c).collect();
+        let stacked = Stacked::new(&rows, &with, &at, variance.sqrt());
+        let gain = 0.5 * (weak.squares - stacked.squares) / variance;
+        Some((stacked.minimiser()?, gain))
+    }
 }

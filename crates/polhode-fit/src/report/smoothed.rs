@@ -144,6 +144,7 @@ pub(crate) fn report(
         whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
         torque: torque(chosen, excess, read.unit, settings.torque == TorqueModel::Auto),
         models: models(&chosen.models, chosen.model, None),
+        reading_errors: Vec::new(),
         nuisances: Vec::new(),
         systematic: Vec::new(),
         prior: agreed,

@@ -5,11 +5,11 @@ use nalgebra::{Matrix3, Vector3};
 
 use crate::columns::column::Column;
 use crate::columns::rotor::Rotor;
-use crate::columns::sets::{magnet_columns, reported_errors, walk_columns};
+use crate::columns::sets::{magnet_columns, reported_errors, told_components, walk_columns};
+use crate::columns::wheel_axis::WheelAxis;
 use crate::models::equations::Equations;
 use crate::physical::coordinates::{pair, tensor};
 use crate::report::nuisance::Systematic;
-use crate::report::sensor::{Suspect, suspect};
 use crate::signal::stretch::Stretch;
 use crate::solve::stacked::responses;
 use crate::solve::weak_estimate::WeakEstimate;
@@ -26,7 +26,18 @@ struct Line {
 pub(crate) fn errors(own: &[Column], stretches: &[Stretch], rms: f64) -> Vec<Column> {
     // of momenta the sizes alone depend on the tensor
     let lines = lines(own, &Matrix3::identity(), stretches, rms);
-    lines.iter().flat_map(|line| &line.columns).map(|(column, _)| *column).collect()
+    let told = told_components(stretches).into_iter().map(|axis| Column::new(WheelAxis(axis), None));
+    lines.iter().flat_map(|line| &line.columns).map(|(column, _)| *column).chain(told).collect()
+}
+
+/// Root mean square of the momentum of a body of the tensor `j`.
+pub(crate) fn momentum(stretches: &[Stretch], j: &Matrix3<f64>) -> f64 {
+    let (mut squares, mut count) = (0.0, 0.0);
+    for rate in stretches.iter().flat_map(|stretch| &stretch.rates) {
+        squares += (j * rate).norm_squared();
+        count += 1.0;
+    }
+    (squares / f64::max(count, 1.0)).sqrt()
 }
 
 /// These errors in the units of the fit, with the sizes that a report speaks of for a body of the tensor `j`.
@@ -41,12 +52,7 @@ fn lines(own: &[Column], j: &Matrix3<f64>, stretches: &[Stretch], rms: f64) -> V
         Some(alone(column, column.effect().reported_size()?, 1.0 / column.label().factor(rms)))
     };
     let mut lines: Vec<Line> = sensor.filter_map(line).collect();
-    let (mut squares, mut count) = (0.0, 0.0);
-    for rate in stretches.iter().flat_map(|stretch| &stretch.rates) {
-        squares += (j * rate).norm_squared();
-        count += 1.0;
-    }
-    let momentum = (squares / f64::max(count, 1.0)).sqrt();
+    let momentum = momentum(stretches, j);
     lines.extend([0, 1, 2].map(|axis| alone(Column::new(Rotor(axis), None), WHEEL, momentum)));
     let magnet = magnet_columns(stretches);
     if magnet.len() <= MOST {
@@ -63,7 +69,7 @@ fn lines(own: &[Column], j: &Matrix3<f64>, stretches: &[Stretch], rms: f64) -> V
     lines
 }
 
-/// The lines of the report, and what the fit takes to be zero and would explain the record better; `axes` and `moments` are the principal ones, ascending, and `rms` is the unit rate, rad/s.
+/// The lines of the report; `axes` and `moments` are the principal ones, ascending, and `rms` is the unit rate, rad/s.
 ///
 /// With g the derivative of the equations with respect to an error, the estimate moves by what makes |G δ − g| least.
 pub(crate) fn systematic(
@@ -74,17 +80,14 @@ pub(crate) fn systematic(
     moments: &[f64; 3],
     variance: f64,
     rms: f64,
-) -> (Vec<Systematic>, Option<Suspect>) {
+) -> Vec<Systematic> {
     let lines = lines(&weak.columns, &tensor(&weak.x()), stretches, rms);
     let errors = equations.errors().len();
     let columns: Vec<Column> =
         equations.errors().iter().copied().chain(weak.columns.iter().copied()).collect();
-    let Some(whitened) = equations.with_errors(&weak.columns) else { return (Vec::new(), None) };
-    let suspect = suspect(weak, stretches, &columns, errors, &whitened, (variance, rms));
+    let Some(whitened) = equations.with_errors(&weak.columns) else { return Vec::new() };
     let rows: Vec<&[f64]> = whitened.iter().map(Vec::as_slice).collect();
-    let Some(steps) = responses(&rows, &columns, errors, variance.sqrt()) else {
-        return (Vec::new(), suspect);
-    };
+    let Some(steps) = responses(&rows, &columns, errors, variance.sqrt()) else { return Vec::new() };
     // of the principal moments and of the ratios, by a column of a given size
     let changes = |k: usize, size: f64| -> [f64; 5] {
         let step = steps[k] * size;
@@ -105,5 +108,5 @@ pub(crate) fn systematic(
         let (name, size, unit) = (line.name, line.size, line.unit);
         Systematic { name, size, unit, principal: [a, b, c], ratios: [d, e] }
     });
-    (each.filter(|s| s.principal.iter().all(|v| v.is_finite())).collect(), suspect)
+    each.filter(|s| s.principal.iter().all(|v| v.is_finite())).collect()
 }

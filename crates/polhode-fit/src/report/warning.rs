@@ -2,7 +2,8 @@
 
 use core::fmt;
 
-use crate::error::per_cent;
+use crate::error::{per_cent, with_sigma};
+use crate::models::reading_error::ReadingError;
 use crate::physical::constraint::ActiveConstraint;
 use crate::report::nuisance::FittedTorque;
 use crate::report::parts::{Halves, Scatter};
@@ -95,6 +96,8 @@ pub enum Warning {
     MomentumTrend(InvariantTrend),
     /// The energy ω·J ω changes.
     EnergyTrend(InvariantTrend),
+    /// Wheel momenta and torques of the record are zero in all its samples: they give the tensor no size, and the fit is that of a body without.
+    ZeroInputs,
     /// Wheel momenta and torques of the record are too small to give the tensor its size, or give it a negative one.
     NoScale {
         /// One over the trace that they give, in its standard deviations.
@@ -102,6 +105,15 @@ pub enum Warning {
     },
     /// A torque was found and reckoned with.
     Torque(FittedTorque),
+    /// An error of the sensor, or of the momentum of wheels, explains the record without a torque as well as the torque that was chosen; the deviations reach both.
+    AsWell {
+        /// The error.
+        error: ReadingError,
+        /// Its largest component: an angle, rad, a ratio, an offset, rad/s, or a delay, s.
+        size: f64,
+        /// Log-likelihood with it less that with the torque.
+        gain: f64,
+    },
     /// A constant torque that is no part of the fit would explain the record better.
     ConstantTorque {
         /// Gain of log-likelihood with it, to first order.
@@ -275,6 +287,10 @@ impl fmt::Display for Warning {
             ),
             Self::MomentumTrend(trend) => torque(f, "momentum |J w|", trend),
             Self::EnergyTrend(trend) => torque(f, "energy w J w", trend),
+            Self::ZeroInputs => f.write_str(
+                "the wheel momenta and torques of the record are zero in all its samples: the fit is that of a body without any, and its size \
+                 stays unknown; if a wheel turned, give its momentum",
+            ),
             Self::NoScale { size } if *size < -NEGATIVE => write!(
                 f,
                 "the wheel momenta and torques give the tensor a negative size, by {:.0} of its deviations: their sign is wrong",
@@ -284,6 +300,15 @@ impl fmt::Display for Warning {
                 "the size of the tensor is unknown: the wheel momenta and torques do not stand out of the noise",
             ),
             Self::Torque(torque) => reckoned(f, torque),
+            Self::AsWell { error, size, gain } => write!(
+                f,
+                "{}, up to {}, without any torque would explain the record as well as this torque does (log-likelihood {} by {:.1}): the \
+                 deviations reach both",
+                error.in_words(),
+                error.of_size(*size),
+                if *gain < 0.0 { "lower" } else { "higher" },
+                gain.abs()
+            ),
             Self::ConstantTorque { gain, turn } => write!(
                 f,
                 "a constant torque, which is no part of the fit, would explain the record better (log-likelihood higher by {gain:.1}); it would \
@@ -369,7 +394,7 @@ impl fmt::Display for Warning {
             Self::MovingAxes { turn, gain } => write!(
                 f,
                 "the axes of attitudes and rates move against each other, by {turn:.2e} rad from the first sample to the last (log-likelihood \
-                 higher by {gain:.0}): fix both to the body, or compare their clocks"
+                 higher by {gain:.0}): the fit reckons with an even turn; fix both to the body, or compare their clocks"
             ),
             Self::Profile { times } => write!(
                 f,
@@ -402,13 +427,6 @@ fn reckoned(f: &mut fmt::Formatter<'_>, torque: &FittedTorque) -> fmt::Result {
         Some([first, second]) => write!(f, "; without it I1/I3 would be {first:.4} and I2/I3 {second:.4}"),
         None => Ok(()),
     }
-}
-
-/// Both to two digits of the deviation.
-fn with_sigma(value: f64, sigma: f64) -> String {
-    let digits = if sigma > 0.0 { 1.0 - libm::floor(libm::log10(sigma)) } else { 2.0 };
-    let digits = digits.clamp(0.0, 15.0) as usize;
-    format!("{value:.digits$} +- {sigma:.digits$}")
 }
 
 /// `x` to four digits.

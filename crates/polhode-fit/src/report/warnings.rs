@@ -4,8 +4,10 @@ use crate::solve::weak_estimate::Convergence;
 use crate::thresholds::noise::DEVIATIONS;
 use crate::thresholds::poses::{DOUBTFUL, MOVING};
 use crate::thresholds::warnings::{APART, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, UNEXPLAINED};
-use polhode::record::Record;
+use nalgebra::Vector3;
+use polhode::record::{Record, Segment};
 
+use crate::models::reading_error::ReadingError;
 use crate::report::attitudes::AttitudeFit;
 use crate::report::differing::Differing;
 use crate::report::estimate::Estimate;
@@ -16,6 +18,13 @@ use crate::report::warning::Warning;
 use crate::settings::torque::TorqueModel;
 use crate::solve::weak_estimate::WeakEstimate;
 use crate::units::Others;
+
+/// Whether the record has wheel momenta or torques, and they are zero in all its samples.
+pub(crate) fn has_zero_inputs(record: &Record) -> bool {
+    let inputs = || record.segments.iter().filter_map(Segment::inputs);
+    let values = || inputs().flat_map(|inputs| inputs.wheel.iter().chain(&inputs.torque));
+    values().next().is_some() && values().all(|value| *value == Vector3::zeros())
+}
 
 /// What warnings are drawn from, besides the estimate.
 pub(super) struct Grounds<'a> {
@@ -28,7 +37,10 @@ pub(super) struct Grounds<'a> {
     /// Units that explain the record as well.
     pub(super) open: Option<&'a Others>,
     /// What the fit takes to be zero and would explain the record better.
-    pub(super) suspect: Option<Suspect>,
+    pub(super) suspect: Option<&'a Suspect>,
+    /// The error of the record that explains it without a torque as well as the chosen torque, with its size and its log-likelihood less
+    /// that of this.
+    pub(super) as_well: Option<(ReadingError, f64, f64)>,
     /// What the free motion leaves of the samples, of a free body: mean square of a component over that of the noise, and the number of
     /// components.
     pub(super) left: Option<(f64, f64)>,
@@ -68,6 +80,9 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
             unexplained: others.as_read,
             other: others.best,
         });
+    }
+    if has_zero_inputs(record) {
+        list.push(Warning::ZeroInputs);
     }
     if record.merged() > 0 {
         list.push(Warning::Merged { samples: record.merged() });
@@ -111,12 +126,13 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     }
     if found && e.torque.model != TorqueModel::None {
         list.push(Warning::Torque(e.torque.clone()));
+        list.extend(grounds.as_well.map(|(error, size, gain)| Warning::AsWell { error, size, gain }));
     }
     let density = e.per_segment.iter().map(|s| s.torque_noise).fold(0.0, f64::max);
     if noise_found && density > 0.0 && e.unexplained.is_none_or(|share| share > UNEXPLAINED) {
         list.push(Warning::TorqueNoise { density, unexplained: e.unexplained });
     }
-    if let Some(Suspect { what, remedy, size, unit, gain }) = suspect {
+    if let Some(&Suspect { what, remedy, size, unit, gain, .. }) = suspect {
         list.push(Warning::LeftOut { what, size, unit, gain, remedy });
     }
     list.extend(halves(weak, grounds.variance * misfit.max(1.0)).map(Warning::Halves));

@@ -35,6 +35,8 @@ pub(crate) struct Terms {
     pub(crate) skew: Vector3<f64>,
     /// One over the trace.
     pub(crate) input: f64,
+    /// What is added to it for each component of the momentum of wheels.
+    pub(crate) of_wheel: Vector3<f64>,
 }
 
 impl Terms {
@@ -50,6 +52,7 @@ impl Terms {
             offset: Vector3::zeros(),
             skew: Vector3::zeros(),
             input: 0.0,
+            of_wheel: Vector3::zeros(),
         }
     }
 
@@ -58,9 +61,14 @@ impl Terms {
         self.sensor * reading - self.offset
     }
 
+    /// u h of a momentum h of wheels.
+    pub(crate) fn wheel(&self, told: &Vector3<f64>) -> Vector3<f64> {
+        told * self.input + told.component_mul(&self.of_wheel)
+    }
+
     /// The derivative of ω × (J ω + u h) + D ω + c |ω| J ω.
     pub(crate) fn by_rate(&self, w: &Vector3<f64>, wheel: &Vector3<f64>) -> Matrix3<f64> {
-        let own = cross_derivative(&self.j, w) + self.viscous - wheel.cross_matrix() * self.input;
+        let own = cross_derivative(&self.j, w) + self.viscous - self.wheel(wheel).cross_matrix();
         if self.quadratic == 0.0 { own } else { own + self.j * slope(w) * self.quadratic }
     }
 }

@@ -71,6 +71,13 @@ impl Joint {
         self.told.root.iter().all(|v| v.is_finite()).then_some(self)
     }
 
+    /// By how much the kept columns and the tensor are moved at other unknowns.
+    pub(crate) fn moved(&self, to: &Unknowns) -> DMatrix<f64> {
+        let columns = self.kept.iter().map(|&k| to.c[k] - self.best.c[k]);
+        let steps = columns.chain((to.x - self.best.x).iter().copied()).collect::<Vec<f64>>();
+        DMatrix::from_column_slice(steps.len(), 1, &steps)
+    }
+
     /// A factor of a covariance that the tensor alone has, as of the kept columns and the tensor.
     pub(crate) fn of_tensor(&self, spread: &Form) -> DMatrix<f64> {
         let size = self.told.root.ncols();

@@ -1,9 +1,10 @@
 //! The torque that a record asks for: one rung after the other, each on its gain of likelihood.
 
-use crate::columns::column::Column;
+use crate::columns::column::{Column, terms_of_all};
 use crate::columns::sets::torque_columns;
 use crate::models::MODELS;
 use crate::models::equations::Equations;
+use crate::models::reading_error::{ReadingError, Units};
 use crate::models::weighed::{Weighed, asked};
 use crate::physical::coordinates::Coordinates;
 use crate::settings::torque::TorqueModel;
@@ -39,6 +40,8 @@ pub(crate) struct Demand<'a> {
     pub(crate) columns: &'a [Column],
     /// Errors of the sensor that are taken to be zero.
     pub(crate) errors: &'a [Column],
+    /// Unit of the rates, rad/s.
+    pub(crate) rms: f64,
 }
 
 impl Demand<'_> {
@@ -80,7 +83,14 @@ impl Rung {
         let deviation = (variance * self.weak.misfit(variance).max(1.0)).sqrt();
         let factor = self.weak.root.try_inverse()? * deviation;
         let is_fit = self.weak.has_settled() && gain.is_finite();
-        is_fit.then_some(Weighed { model: self.model, gain, x: self.weak.x(), factor, held_out: None })
+        is_fit.then_some(Weighed {
+            model: self.model,
+            error: None,
+            gain,
+            x: self.weak.x(),
+            factor,
+            held_out: None,
+        })
     }
 }
 
@@ -209,9 +219,19 @@ impl Ladder<'_> {
         if best.model == TorqueModel::Drag {
             best.equations = self.equations(&best.weak);
         }
+        let is_quadratic = best.model == TorqueModel::Drag
+            && gain_of(&best, &[TorqueModel::Quadratic], variance) > HOPE * FIRST;
+        if is_quadratic
+            && let Ok(quadratic) = self.descent(TorqueModel::Quadratic, radius, Some(Reached::of(&best.weak)))
+        {
+            best = climb(best, self.rung(TorqueModel::Quadratic, quadratic));
+            if best.model == TorqueModel::Quadratic {
+                best.equations = self.equations(&best.weak);
+            }
+        }
         // a drag that has no part along one axis is far from one in proportion to the momentum
         let is_drag3 = match best.model {
-            TorqueModel::Drag => may_be_drag3(&best, variance),
+            TorqueModel::Drag | TorqueModel::Quadratic => may_be_drag3(&best, variance),
             TorqueModel::Constant => of_drag3 > gain,
             _ => false,
         };
@@ -234,27 +254,43 @@ impl Ladder<'_> {
         Rung { model, weak, likelihood, equations: None }
     }
 
-    /// What every model makes of the record. Of one that was not fitted by itself the equations of the chosen one say it, to first
-    /// order, as they say what each predicts of a segment from the others.
+    /// What every model makes of the record, and every error of it in the place of a torque. Of one that was not fitted by itself the
+    /// equations of the chosen one say it, to first order, as they say what each predicts of a segment from the others.
     fn weigh(&self, chosen: &Chosen) -> Vec<Weighed> {
-        let (weak, variance) = (&chosen.weak, self.variance);
+        let (weak, demand, variance) = (&chosen.weak, &self.demand, self.variance);
         let Some(equations) = &chosen.equations else { return Vec::new() };
         let fitted = |model| chosen.models.iter().find(|one| one.model == model).cloned();
         let own = equations.of(chosen.model).stacked().squares;
         let none = equations.of(TorqueModel::None).stacked().squares;
         let base = fitted(chosen.model).map_or(0.5 * (none - own) / variance, |one| one.gain);
         let deviation = (variance * weak.misfit(variance).max(1.0)).sqrt();
+        let units = Units { rms: demand.rms, input: terms_of_all(&weak.columns, &weak.at).input };
+        let of_errors = ReadingError::all(self.stretches).into_iter().filter_map(|error| {
+            let columns = error.columns(self.stretches, units);
+            let equations = equations.of_errors(&columns)?;
+            let stacked = equations.stacked();
+            let best = stacked.minimiser()?;
+            let largest = best.c.iter().take(columns.len()).fold(0.0, |most: f64, c| most.max(c.abs()));
+            Some(Weighed {
+                model: TorqueModel::None,
+                error: Some((error, largest * error.factor(units))),
+                gain: base + 0.5 * (own - stacked.squares) / variance,
+                x: best.x,
+                factor: stacked.root.try_inverse()? * deviation,
+                held_out: equations.held_out(),
+            })
+        });
         let each = MODELS.into_iter().filter_map(|model| {
             let equations = equations.of(model);
             let linear = || {
                 let stacked = equations.stacked();
                 let gain = base + 0.5 * (own - stacked.squares) / variance;
                 let factor = stacked.root.try_inverse()? * deviation;
-                Some(Weighed { model, gain, x: stacked.minimiser()?.x, factor, held_out: None })
+                Some(Weighed { model, error: None, gain, x: stacked.minimiser()?.x, factor, held_out: None })
             };
             Some(Weighed { held_out: equations.held_out(), ..fitted(model).or_else(linear)? })
         });
-        each.filter(|one| one.factor.iter().chain(&one.x).all(|v| v.is_finite())).collect()
+        each.chain(of_errors).filter(|one| one.factor.iter().chain(&one.x).all(|v| v.is_finite())).collect()
     }
 }
 
@@ -267,7 +303,7 @@ pub(crate) fn threshold(coefficients: usize) -> f64 {
 ///
 /// It is that of the samples: the determinants are over those without torque noise, since residuals and covariance
 /// that both shrink with the tensor tell nothing.
-fn likelihood(stretches: &[Stretch], weak: &WeakEstimate, variance: f64) -> f64 {
+pub(crate) fn likelihood(stretches: &[Stretch], weak: &WeakEstimate, variance: f64) -> f64 {
     let mut sum = weak.squares / variance;
     for part in weak.parts.iter().filter(|part| part.levels != Levels::WHITE) {
         let white = part.covariance(&stretches[part.stretch]).into_factor(Levels::WHITE);
@@ -294,10 +330,10 @@ fn gain_of(rung: &Rung, models: &[TorqueModel], variance: f64) -> f64 {
     squares.map_or(0.0, |squares| 0.5 * (rung.weak.squares - squares) / variance)
 }
 
-/// Whether drag about three axes may be worth a fit beside the drag of an estimate.
+/// Whether drag about three axes may be worth a fit beside the drag of an estimate, in proportion to the rate or to its square.
 fn may_be_drag3(drag: &Rung, variance: f64) -> bool {
     let count = |model| torque_columns(model).len();
-    let more = count(TorqueModel::Drag3).saturating_sub(count(TorqueModel::Drag));
-    let both = [TorqueModel::Drag3, TorqueModel::Drag];
+    let more = count(TorqueModel::Drag3).saturating_sub(count(drag.model));
+    let both = [TorqueModel::Drag3, drag.model];
     !drag.weak.has_settled() || gain_of(drag, &both, variance) > HOPE * threshold(more)
 }

@@ -162,7 +162,7 @@ fn carry(
         let mut own = terms.j * (values.cross(&w) - slopes) - values.cross(&(terms.j * w))
             + terms.viscous.tr_mul(&values);
         if let Some(inputs) = &stretch.inputs {
-            own -= values.cross(&(inputs.wheel[i] * terms.input));
+            own -= values.cross(&terms.wheel(&inputs.wheel[i]));
         }
         if terms.quadratic != 0.0 {
             own += slope(&w) * (terms.j * values) * terms.quadratic;

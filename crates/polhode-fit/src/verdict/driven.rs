@@ -119,10 +119,10 @@ pub(crate) fn check_order(
 const ORDERS: [[usize; 3]; 6] = [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]];
 
 /// Whether an estimate needs no torque noise, and leaves no more than noise.
-fn is_explained(chosen: &Chosen, variance: f64) -> bool {
+pub(super) fn is_explained(chosen: &Chosen, variance: f64) -> bool {
     !chosen.weak.has_torque_noise() && is_noise(&chosen.weak, variance)
 }
 
-fn is_noise(weak: &WeakEstimate, variance: f64) -> bool {
+pub(super) fn is_noise(weak: &WeakEstimate, variance: f64) -> bool {
     weak.misfit(variance) <= weak.expected_misfit()
 }

@@ -3,4 +3,5 @@
 pub(crate) mod driven;
 pub(crate) mod judgement;
 pub(crate) mod prior;
+pub(crate) mod told;
 pub(crate) mod units;

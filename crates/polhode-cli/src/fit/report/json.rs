@@ -90,6 +90,11 @@ fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
             "ratios": one.ratios, "sigma_ratios": one.sigma_ratios,
             "unexplained_share": one.unexplained, "held_out": one.held_out,
         })).collect::<Vec<_>>(),
+        "reading_errors": e.reading_errors.iter().map(|one| json!({
+            "error": one.error.to_string(), "size": one.size, "log_likelihood": one.gain, "share": one.share,
+            "principal": one.principal, "sigma_principal": one.sigma_principal,
+            "ratios": one.ratios, "sigma_ratios": one.sigma_ratios, "held_out": one.held_out,
+        })).collect::<Vec<_>>(),
         "nuisances": nuisances(&e.nuisances),
         "prior": e.prior.map(|p| json!({ "chi2": p.chi2, "dof": p.dof })),
         "systematic": e.systematic.iter().map(|line| json!({

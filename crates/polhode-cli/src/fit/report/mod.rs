@@ -6,7 +6,7 @@ mod rows;
 mod text;
 
 use nalgebra::SMatrix;
-use polhode_fit::{AverageAxis, Estimate, Identifiability, Method, ModelFit, Record, Systematic};
+use polhode_fit::{AverageAxis, ErrorFit, Estimate, Identifiability, Method, ModelFit, Record, Systematic};
 use polhode_pages::table::{Column, Format, Table, row};
 use serde_json::{Value, json};
 
@@ -243,7 +243,7 @@ pub(super) fn mirror(e: &Estimate) -> Option<String> {
     Some(format!("if the axes are left-handed (--axes): I1 : I2 : I3 = {a} : {b} : {c}"))
 }
 
-/// The models of the torque beside each other: name, gain of log-likelihood, share, both ratios with their deviations, what free
+/// The models of the torque, and errors of the record without one, beside each other: name, gain of log-likelihood, share, both ratios with their deviations, what free
 /// motion leaves, what they make of a segment that is held out.
 pub(super) fn models(e: &Estimate) -> Vec<[String; 7]> {
     let ratio = |one: &ModelFit, k: usize| concise(one.ratios[k], one.sigma_ratios[k]);
@@ -259,7 +259,13 @@ pub(super) fn models(e: &Estimate) -> Vec<[String; 7]> {
             one.held_out.map_or("-".into(), |square| format!("{square:.3}")),
         ]
     };
-    e.models.iter().map(row).collect()
+    let of_sensor = |one: &ErrorFit| {
+        let ratio = |k: usize| concise(one.ratios[k], one.sigma_ratios[k]);
+        let held_out = one.held_out.map_or("-".into(), |square| format!("{square:.3}"));
+        let [gain, share] = [format!("{:.1}", one.gain), format!("{:.3}", one.share)];
+        [one.to_string(), gain, share, ratio(0), ratio(1), "-".into(), held_out]
+    };
+    e.models.iter().map(row).chain(e.reading_errors.iter().map(of_sensor)).collect()
 }
 
 /// The heads of its columns.
@@ -271,5 +277,6 @@ pub(super) fn about_models(e: &Estimate) -> String {
         true => "the answer's deviations include their spread, in proportion to their shares",
         false => "the answer's deviations are those of the torque that was asked for",
     };
-    format!("models of the torque, each with its own deviation in brackets; {deviations}")
+    let sensor = if e.reading_errors.is_empty() { "" } else { ", and errors of the record without a torque" };
+    format!("models of the torque{sensor}, each with its own deviation in brackets; {deviations}")
 }
