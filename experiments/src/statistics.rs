@@ -1,4 +1,6 @@
-//! What many numbers amount to: the share of some with its interval, quantiles, the largest, and the digits that are worth a line of a table.
+//! What many numbers amount to: the share of some and their median with intervals, quantiles, the largest, and the digits that are worth a line of a table.
+
+use polhode::num::Random;
 
 /// The normal deviate that one in twenty exceeds, either sign.
 const ONE_IN_TWENTY: f64 = 1.959_963_984_540_054;
@@ -51,6 +53,26 @@ impl Quantiles {
     }
 }
 
+/// Ensembles that are drawn for an interval.
+const DRAWS: usize = 400;
+
+/// The 95 % interval of the median of `values`, by ensembles that are drawn from them with repetition. `None` of no values. What is
+/// infinite stays so.
+///
+/// Source: B. Efron, Ann. Stat. 7 (1979) 1.
+pub(crate) fn median_interval(values: &[f64], mut random: Random) -> Option<(f64, f64)> {
+    let middle = values.len().checked_sub(1)?.div_ceil(2);
+    let mut medians: Vec<f64> = (0..DRAWS)
+        .map(|_| {
+            let draw = |_| values[random.below(values.len() as u64) as usize];
+            let mut drawn: Vec<f64> = (0..values.len()).map(draw).collect();
+            *drawn.select_nth_unstable_by(middle, f64::total_cmp).1
+        })
+        .collect();
+    medians.sort_by(f64::total_cmp);
+    Some((medians[DRAWS / 40], medians[DRAWS - 1 - DRAWS / 40]))
+}
+
 /// The largest of some numbers that are not negative; NaN if one is NaN, which `f64::max` would drop.
 pub(crate) fn largest(numbers: impl IntoIterator<Item = f64>) -> f64 {
     numbers.into_iter().fold(0.0, |most: f64, x| if most.is_nan() || most >= x { most } else { x })
@@ -77,6 +99,23 @@ mod tests {
             i.high
         );
         assert!(Interval::new(0, 0).is_none());
+    }
+
+    #[test]
+    fn the_interval_of_a_median_covers_it_as_often_as_it_says() {
+        let covers = |seed: u64| {
+            let mut random = Random::new(7).stream(seed);
+            let values: Vec<f64> = (0..101).map(|_| random.normal()).collect();
+            let (low, high) = median_interval(&values, random).unwrap();
+            assert!(low < high && high - low < 1.0, "{low} {high}");
+            low <= 0.0 && 0.0 <= high
+        };
+        // 95 % of 400 and four standard deviations
+        let covered = (0..400).filter(|seed| covers(*seed)).count();
+        assert!((362..=398).contains(&covered), "{covered}");
+        let lost = f64::INFINITY;
+        assert_eq!(median_interval(&[lost; 3], Random::new(1)), Some((lost, lost)));
+        assert_eq!(median_interval(&[], Random::new(1)), None);
     }
 
     #[test]

@@ -33,12 +33,17 @@ impl Euler {
         Euler { drag, ..self }
     }
 
+    /// ω' without drag.
+    fn free(&self, w: &Vector3<f64>) -> Vector3<f64> {
+        -self.inverse * w.cross(&(self.j * w))
+    }
+
     fn derivative<const N: usize>(
         &self,
         w: &Vector3<f64>,
         s: &Sensitivity<N>,
     ) -> (Vector3<f64>, Sensitivity<N>) {
-        let free = -self.inverse * w.cross(&(self.j * w));
+        let free = self.free(w);
         let mut ds = -self.inverse * (cross_derivative(&self.j, w) * s) - s * self.drag;
         for k in 0..5 {
             let b = basis(k);
@@ -53,7 +58,7 @@ impl Euler {
 
     /// Moves a rate and its sensitivities on by `time` with the classical Runge–Kutta step.
     pub(super) fn advance<const N: usize>(&self, w: &mut Vector3<f64>, s: &mut Sensitivity<N>, time: f64) {
-        let parts = (w.norm() * time.abs() / STEP).ceil().clamp(1.0, 100.0);
+        let parts = parts(w, time);
         let h = time / parts;
         for _ in 0..parts as usize {
             let (w1, s1) = self.derivative(w, s);
@@ -64,6 +69,25 @@ impl Euler {
             *s += (s1 + (s2 + s3) * 2.0 + s4) * (h / 6.0);
         }
     }
+
+    /// The rate alone, to the same bits.
+    pub(super) fn carry(&self, w: &mut Vector3<f64>, time: f64) {
+        let slope = |w: &Vector3<f64>| self.free(w) - w * self.drag;
+        let parts = parts(w, time);
+        let h = time / parts;
+        for _ in 0..parts as usize {
+            let w1 = slope(w);
+            let w2 = slope(&(*w + w1 * (0.5 * h)));
+            let w3 = slope(&(*w + w2 * (0.5 * h)));
+            let w4 = slope(&(*w + w3 * h));
+            *w += (w1 + (w2 + w3) * 2.0 + w4) * (h / 6.0);
+        }
+    }
+}
+
+/// Steps of the integrator in `time`.
+fn parts(w: &Vector3<f64>, time: f64) -> f64 {
+    (w.norm() * time.abs() / STEP).ceil().clamp(1.0, 100.0)
 }
 
 /// Sensitivities at a start.

@@ -87,7 +87,7 @@ fn about(
     let mut rate = *end;
     let mut rates = vec![rate];
     for times in s.times.windows(2).rev() {
-        euler.advance(&mut rate, &mut at_start::<8>(), times[0] - times[1]);
+        euler.carry(&mut rate, times[0] - times[1]);
         rates.push(rate);
     }
     rates.reverse();
@@ -157,7 +157,7 @@ fn filter(
 }
 
 /// The coordinates moved towards the sphere until no moment is too small.
-fn bounded(x: &Vector5<f64>) -> Vector5<f64> {
+pub(super) fn bounded(x: &Vector5<f64>) -> Vector5<f64> {
     let eigen = tensor(x).symmetric_eigenvalues();
     let smallest = eigen.min();
     if smallest >= SMALLEST {

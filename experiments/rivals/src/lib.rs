@@ -8,7 +8,10 @@ mod momentum;
 mod output_error;
 mod record;
 mod strong;
+mod unscented;
 mod wendy;
+
+use std::cell::OnceCell;
 
 use nalgebra::{DMatrix, Matrix3, Matrix5, UnitQuaternion, Vector5};
 use polhode_fit::Record;
@@ -33,6 +36,8 @@ pub enum Rival {
     WendyLikelihood,
     /// Extended Kalman filter of rate and tensor, three runs, its prior being the best of several at each noise.
     Kalman,
+    /// Unscented Kalman filter of the same, with the same priors to choose from.
+    Unscented,
     /// Iterated smoother of the same.
     Smoother,
     /// Maximum likelihood by multiple shooting.
@@ -42,7 +47,7 @@ pub enum Rival {
 }
 
 /// All of them, maximum likelihood last.
-pub const RIVALS: [Rival; 10] = [
+pub const RIVALS: [Rival; 11] = [
     Rival::CentralDifferences,
     Rival::SavitzkyGolay,
     Rival::Momentum,
@@ -50,6 +55,7 @@ pub const RIVALS: [Rival; 10] = [
     Rival::Wendy,
     Rival::WendyLikelihood,
     Rival::Kalman,
+    Rival::Unscented,
     Rival::Smoother,
     Rival::OutputError,
     Rival::OutputErrorWithDrag,
@@ -70,6 +76,29 @@ const START: usize = 101;
 
 /// Error of the attitudes that one rival is given, rad.
 pub const ATTITUDE_NOISE: f64 = 1e-3;
+
+/// A record as all rivals are given it.
+pub struct Given<'a> {
+    stretches: Vec<Stretch>,
+    /// Noise over the root mean square rate.
+    sigma: f64,
+    attitudes: &'a [UnitQuaternion<f64>],
+    /// The coordinates from which those begin that need a start, worked out for the first of them.
+    start: OnceCell<Option<Vector5<f64>>>,
+}
+
+impl<'a> Given<'a> {
+    /// A record with noise `sigma` (rad/s), which rivals are told, and attitudes that one rival is given.
+    pub fn new(record: &Record, sigma: f64, attitudes: &'a [UnitQuaternion<f64>]) -> Self {
+        let (stretches, rms) = normalised(record);
+        Given { stretches, sigma: sigma / rms, attitudes, start: OnceCell::new() }
+    }
+
+    fn start(&self) -> Option<Vector5<f64>> {
+        let of = || Some(least_squares(&self.stretches, |s| strong::savitzky_golay(s, START))?.coordinates);
+        *self.start.get_or_init(of)
+    }
+}
 
 /// What a rival says.
 pub struct Answer {
@@ -113,6 +142,7 @@ impl Rival {
             Self::Wendy => "WENDy, tuned",
             Self::WendyLikelihood => "WENDy-MLE, tuned",
             Self::Kalman => "extended Kalman filter, tuned",
+            Self::Unscented => "unscented Kalman filter, tuned",
             Self::Smoother => "iterated Kalman smoother",
             Self::OutputError => "maximum likelihood",
             Self::OutputErrorWithDrag => "maximum likelihood with drag",
@@ -125,7 +155,7 @@ impl Rival {
             Self::SavitzkyGolay => WINDOWS.len(),
             Self::Wendy => RADII.len(),
             Self::WendyLikelihood => OF_LIKELIHOOD.len(),
-            Self::Kalman => PRIORS.len(),
+            Self::Kalman | Self::Unscented => PRIORS.len(),
             _ => 1,
         }
     }
@@ -136,40 +166,30 @@ impl Rival {
             Self::SavitzkyGolay => format!("window {}", WINDOWS[k]),
             Self::Wendy => format!("radii from {} rad", RADII[k]),
             Self::WendyLikelihood => format!("radius {} rad", OF_LIKELIHOOD[k]),
-            Self::Kalman => format!("prior {}", PRIORS[k]),
+            Self::Kalman | Self::Unscented => format!("prior {}", PRIORS[k]),
             _ => String::new(),
         }
     }
 
-    /// The answer with its k-th choice to a record with noise `sigma` (rad/s), which rivals are told, and attitudes that
-    /// one rival is given. `None` where there is no answer.
-    pub fn answer(
-        self,
-        k: usize,
-        record: &Record,
-        sigma: f64,
-        attitudes: &[UnitQuaternion<f64>],
-    ) -> Option<Answer> {
-        let (stretches, rms) = normalised(record);
-        let sigma = sigma / rms;
-        // those that need a start have it from here
-        let start = || {
-            let answer = least_squares(&stretches, |s| strong::savitzky_golay(s, START))?;
-            Some(answer.coordinates)
-        };
+    /// The answer with its k-th choice; `None` where there is none.
+    pub fn answer(self, k: usize, given: &Given) -> Option<Answer> {
+        let Given { stretches, sigma, attitudes, .. } = given;
+        let sigma = *sigma;
+        let start = || given.start();
         match self {
-            Self::CentralDifferences => least_squares(&stretches, strong::central_differences),
-            Self::SavitzkyGolay => least_squares(&stretches, |s| strong::savitzky_golay(s, WINDOWS[k])),
-            Self::Momentum => least_squares(&stretches, momentum::integrated),
+            Self::CentralDifferences => least_squares(stretches, strong::central_differences),
+            Self::SavitzkyGolay => least_squares(stretches, |s| strong::savitzky_golay(s, WINDOWS[k])),
+            Self::Momentum => least_squares(stretches, momentum::integrated),
             Self::MomentumWithAttitude => {
                 momentum::measured(stretches.first()?, attitudes, start()?, sigma, ATTITUDE_NOISE)
             }
-            Self::Wendy => wendy::answer(&stretches, RADII[k], sigma),
-            Self::WendyLikelihood => wendy::likeliest(&stretches, OF_LIKELIHOOD[k], sigma),
-            Self::Kalman => kalman::filtered(&stretches, start()?, PRIORS[k], sigma),
-            Self::Smoother => kalman::smoothed(&stretches, start()?, WIDE, sigma),
-            Self::OutputError => output_error::answer(&stretches, start()?, false, sigma),
-            Self::OutputErrorWithDrag => output_error::answer(&stretches, start()?, true, sigma),
+            Self::Wendy => wendy::answer(stretches, RADII[k], sigma),
+            Self::WendyLikelihood => wendy::likeliest(stretches, OF_LIKELIHOOD[k], sigma),
+            Self::Kalman => kalman::filtered(stretches, start()?, PRIORS[k], sigma),
+            Self::Unscented => unscented::filtered(stretches, start()?, PRIORS[k], sigma),
+            Self::Smoother => kalman::smoothed(stretches, start()?, WIDE, sigma),
+            Self::OutputError => output_error::answer(stretches, start()?, false, sigma),
+            Self::OutputErrorWithDrag => output_error::answer(stretches, start()?, true, sigma),
         }
     }
 }
@@ -219,8 +239,9 @@ mod tests {
     }
 
     fn best(rival: Rival, example: &Example, sigma: f64) -> (f64, Option<f64>) {
+        let given = Given::new(&example.record, sigma, &example.attitudes);
         let answers = (0..rival.choices())
-            .filter_map(|k| rival.answer(k, &example.record, sigma, &example.attitudes))
+            .filter_map(|k| rival.answer(k, &given))
             .map(|a| ((a.shape - example.j).norm(), a.own_square(&example.j)));
         answers.min_by(|a, b| a.0.total_cmp(&b.0)).unwrap()
     }

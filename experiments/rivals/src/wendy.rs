@@ -27,6 +27,8 @@ const FEWEST: usize = 10;
 const ROUNDS: usize = 20;
 /// Standard deviations of a coordinate between two points of a difference quotient of the likelihood.
 const APART: f64 = 0.2;
+/// Combinations whose covariance is worked out together.
+const FEW: usize = 8;
 /// Step, in standard deviations, that ends the rounds, and the search for the largest likelihood.
 const NEAR: f64 = 1e-2;
 
@@ -349,14 +351,18 @@ impl Banded {
         let (size, count) = (3 * combinations.len(), self.size / 3);
         // the lower half with half of the diagonal, times the combinations from the left and then from the right
         let mut left = vec![vec![0.0; self.size]; size];
-        for row in 0..self.size {
-            let first = row.saturating_sub(self.width);
-            let entries = &self.entries[self.place(row, first)..self.place(row, row)];
-            let diagonal = 0.5 * self.entries[self.place(row, row)];
-            for (a, combination) in combinations.iter().enumerate() {
-                let (factor, sums) = (combination[row / 3], &mut left[3 * a + row % 3]);
-                sums[first..row].iter_mut().zip(entries).for_each(|(sum, entry)| *sum += factor * entry);
-                sums[row] += factor * diagonal;
+        // a few combinations at a time, whose sums stay near the processor
+        for (chunk, some) in combinations.chunks(FEW).enumerate() {
+            for row in 0..self.size {
+                let first = row.saturating_sub(self.width);
+                let entries = &self.entries[self.place(row, first)..self.place(row, row)];
+                let diagonal = 0.5 * self.entries[self.place(row, row)];
+                for (a, combination) in some.iter().enumerate() {
+                    let factor = combination[row / 3];
+                    let sums = &mut left[3 * (FEW * chunk + a) + row % 3];
+                    sums[first..row].iter_mut().zip(entries).for_each(|(sum, entry)| *sum += factor * entry);
+                    sums[row] += factor * diagonal;
+                }
             }
         }
         let across: Vec<Vec<f64>> = (0..count).map(|k| combinations.iter().map(|c| c[k]).collect()).collect();
@@ -380,23 +386,26 @@ impl Banded {
 
     /// `None` where the matrix is not positive.
     fn factor(&mut self) -> Option<()> {
+        let stride = self.width + 1;
+        // the columns of the factor from the diagonal on: what is taken off a row lies side by side there
+        let mut columns = vec![0.0; self.entries.len()];
         for i in 0..self.size {
             let first = i.saturating_sub(self.width);
-            for k in first..=i {
-                let start = first.max(k.saturating_sub(self.width));
-                let mut sum = self.entries[self.place(i, k)];
-                for l in start..k {
-                    sum -= self.entries[self.place(i, l)] * self.entries[self.place(k, l)];
-                }
-                let place = self.place(i, k);
-                if k < i {
-                    self.entries[place] = sum / self.entries[self.place(k, k)];
-                } else if sum > 0.0 {
-                    self.entries[place] = sum.sqrt();
-                } else {
-                    return None;
-                }
+            let place = self.place(i, first);
+            let row = &mut self.entries[place..place + (i - first) + 1];
+            for l in first..i {
+                let entry = row[l - first] / columns[l * stride];
+                row[l - first] = entry;
+                columns[l * stride + i - l] = entry;
+                let column = &columns[l * stride + 1..=l * stride + i - l];
+                row[l - first + 1..].iter_mut().zip(column).for_each(|(sum, other)| *sum -= entry * other);
             }
+            let square = row[i - first];
+            if square.is_nan() || square <= 0.0 {
+                return None;
+            }
+            row[i - first] = square.sqrt();
+            columns[i * stride] = square.sqrt();
         }
         Some(())
     }

@@ -1,18 +1,20 @@
 //! Attitude errors of all methods of order four beside that of rk4, over random free bodies: at the same step, and at the same
-//! cost.
+//! cost; from any start, and from starts next to the separatrix.
 
 use polhode::body::Problem;
 use polhode::method::{AnyMethod, method, without_projections};
 use polhode::num::Random;
 use polhode::run::Watch;
-use polhode::truth::{Care, Ending, LOST, Truth, evenly};
+use polhode::truth::{AGREEMENT, Care, Ending, LOST, Truth, evenly};
 use polhode_files::error::{Error, unexpected};
-use polhode_pages::table::{Cell, Column, Table, row};
+use polhode_pages::table::{Column, Table, row};
 
+use super::compared::Compared;
 use super::contestants::{SCHEMES, knows_the_motion, weighed};
 use super::phase::drawn;
+use super::separatrix;
 use crate::experiment::{Context, Report};
-use crate::statistics::{Interval, Quantiles, largest};
+use crate::statistics::largest;
 
 const SEED: u64 = 1901;
 
@@ -21,6 +23,9 @@ const STEP: f64 = 1.0 / 32.0;
 
 /// Times at which the attitude is looked at, equally far apart.
 const LOOKS: u32 = 64;
+
+/// Distances k'² from the separatrix, powers of ten, at which starts are drawn beside those in any direction.
+const NEAR: [i32; 3] = [-2, -4, -8];
 
 /// What the others are compared with.
 const YARDSTICK: &str = "rk4";
@@ -37,37 +42,62 @@ struct Errors {
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let bodies: u64 = context.scale.pick(4, 16, 128);
     let span = context.scale.pick(64.0, 256.0, 1024.0);
-    let truths = context.in_parallel((0..bodies).collect(), |member| {
-        let (body, start) = drawn(Random::new(SEED).stream(member))?;
-        Truth::new(&body, &start, &evenly(span, LOOKS)).map_err(unexpected)
-    });
-    let truths = truths.into_iter().collect::<Result<Vec<_>, Error>>()?;
-    let found = context.in_parallel(of_order_four()?, |method| examine(method.as_ref(), &truths));
-    let mut found = found.into_iter().collect::<Result<Vec<_>, Error>>()?;
-    let of_rk4 = found.iter().position(|errors| errors.name == YARDSTICK);
-    let yardstick = of_rk4.map(|k| found.remove(k)).ok_or_else(|| unexpected("rk4 is not of order four"))?;
-    let mut found = found.iter().map(|errors| Beside::new(errors, &yardstick)).collect::<Option<Vec<_>>>();
-    let found = found.as_mut().ok_or_else(|| unexpected("no start from which an attitude is held"))?;
-    found.sort_by(|a, b| a.at_cost.ratios.median.total_cmp(&b.at_cost.ratios.median));
     let caption = format!(
-        "Largest attitude error over that of rk4, methods of order four, from {bodies} random bodies and starts that turn by {span} rad: at the \
-         step of 1/{} rad, and at as many evaluations (an implicit solution counts as six); below 1 a method is more accurate than rk4.",
+        "Largest attitude error over that of rk4, methods of order four, {bodies} random bodies that turn by {span} rad, from any start and at three \
+         distances from the separatrix: at the step of 1/{} rad, and at as many evaluations (an implicit solution counts as six); below 1 a method is \
+         more accurate than rk4.",
         1.0 / STEP
     );
     let mut table = Table::new("methods", caption, columns());
-    for Beside { name, cost, at_step, at_cost } in found.iter() {
-        let cells = [at_step, at_cost].into_iter().flat_map(Compared::cells);
-        table.push(row![*name, *cost].into_iter().chain(cells));
+    let mut conclusion = String::new();
+    for distance in std::iter::once(None).chain(NEAR.map(Some)) {
+        let truths = context.in_parallel((0..bodies).collect(), |member| truth(distance, member, span));
+        let truths = truths.into_iter().collect::<Result<Vec<_>, Error>>()?;
+        let found = context.in_parallel(of_order_four()?, |method| examine(method.as_ref(), &truths));
+        let mut found = found.into_iter().collect::<Result<Vec<_>, Error>>()?;
+        let of_rk4 = found.iter().position(|errors| errors.name == YARDSTICK);
+        let yardstick =
+            of_rk4.map(|k| found.remove(k)).ok_or_else(|| unexpected("rk4 is not of order four"))?;
+        let beside = found.iter().map(|errors| Beside::new(errors, &yardstick)).collect::<Option<Vec<_>>>();
+        let mut beside = beside.ok_or_else(|| unexpected("no start from which an attitude is held"))?;
+        beside.sort_by(|a, b| a.at_cost.ratios.median.total_cmp(&b.at_cost.ratios.median));
+        for Beside { name, cost, at_step, at_cost } in &beside {
+            let cells = [at_step, at_cost].into_iter().flat_map(Compared::cells);
+            let complement = distance.map(separatrix::ten);
+            table.push(row![start_name(distance), complement, *name, *cost].into_iter().chain(cells));
+        }
+        if distance.is_none() {
+            let beaten = beside.iter().filter(|one| one.at_cost.ratios.median > 1.0).map(|one| one.name);
+            let beaten: Vec<&str> = beaten.collect();
+            conclusion = format!(
+                "Of {} other methods of order four, at as many evaluations, {} lose more of the attitude than rk4 in the median over {bodies} random bodies: {}",
+                beside.len(),
+                beaten.len(),
+                beaten.join(", ")
+            );
+        }
     }
-    let beaten = found.iter().filter(|one| one.at_cost.ratios.median > 1.0).map(|one| one.name);
-    let beaten: Vec<&str> = beaten.collect();
-    let conclusion = format!(
-        "Of {} other methods of order four, at as many evaluations, {} lose more of the attitude than rk4 in the median over {bodies} random bodies: {}",
-        found.len(),
-        beaten.len(),
-        beaten.join(", ")
-    );
-    Ok(Report { conclusion, tables: vec![table], seed: Some(SEED), ..Report::default() })
+    let any = start_name(None);
+    let caption = "Largest attitude error over that of rk4, methods of order four, random bodies, any start.";
+    let view = table.view("any-start", caption, &["start", "complement"], ("start", any));
+    Ok(Report { conclusion, tables: vec![table], views: vec![view], seed: Some(SEED), ..Report::default() })
+}
+
+/// As the table calls starts at a distance from the separatrix, or anywhere.
+fn start_name(distance: Option<i32>) -> &'static str {
+    if distance.is_some() { "near" } else { "any" }
+}
+
+/// The true motion of a random body over `span` s.
+fn truth(distance: Option<i32>, member: u64, span: f64) -> Result<Truth, Error> {
+    let random = Random::new(SEED);
+    let (body, start) = drawn(random.stream(member))?;
+    let times = evenly(span, LOOKS);
+    let Some(decade) = distance else {
+        return Truth::new(&body, &start, &times).map_err(unexpected);
+    };
+    let (point, _) = separatrix::near(&body, decade, member, 1.0, random.stream((1 << 32) | member))?;
+    Truth::from_point(&body, point, 0.0, &times, AGREEMENT).map_err(unexpected)
 }
 
 /// Of the catalogue and of the schemes beside it, those with equal steps that know nothing of the exact motion.
@@ -112,52 +142,39 @@ struct Beside<'a> {
     at_cost: Compared,
 }
 
-/// Errors over those of the yardstick.
-struct Compared {
-    ratios: Quantiles,
-    /// Of the starts from which they are smaller.
-    better: Interval,
-}
-
 impl<'a> Beside<'a> {
     /// `None` where there is no start from which one of the two holds the attitude.
     fn new(errors: &'a Errors, yardstick: &Errors) -> Option<Self> {
         Some(Beside {
             name: &errors.name,
             cost: errors.cost,
-            at_step: Compared::new(&errors.at_step, &yardstick.at_step)?,
-            at_cost: Compared::new(&errors.at_cost, &yardstick.at_cost)?,
+            at_step: Compared::new(&errors.at_step, &yardstick.at_step, SEED)?,
+            at_cost: Compared::new(&errors.at_cost, &yardstick.at_cost, SEED)?,
         })
-    }
-}
-
-impl Compared {
-    /// Starts from which both are lost do not count.
-    fn new(mine: &[f64], theirs: &[f64]) -> Option<Self> {
-        let ratios = mine.iter().zip(theirs).map(|(mine, theirs)| mine / theirs);
-        let ratios: Vec<f64> = ratios.filter(|ratio| !ratio.is_nan()).collect();
-        let better = ratios.iter().filter(|ratio| **ratio < 1.0).count();
-        let better = Interval::new(better as u64, ratios.len() as u64)?;
-        Some(Compared { ratios: Quantiles::of(ratios)?, better })
-    }
-
-    fn cells(&self) -> [Cell; 6] {
-        // empty where the attitude is lost
-        let held = |ratio: f64| Some(ratio).filter(|ratio| ratio.is_finite());
-        let Compared { ratios: Quantiles { low, median, high }, better } = self;
-        row![held(*low), held(*median), held(*high), better.share, better.low, better.high]
     }
 }
 
 fn columns() -> Vec<Column> {
     let share = |name, meaning| Column::new(name, "", meaning).hidden();
+    let interval = |name: &'static str, meaning| {
+        Column::new(name, "", meaning).heading(if name.ends_with("low") { "from" } else { "to" }).digits(2)
+    };
     vec![
+        Column::new("start", "", "any: in all directions; near: next to the separatrix"),
+        Column::new("complement", "", "k'2 of starts next to the separatrix: their distance to it")
+            .heading("k'²")
+            .latex("$k'^2$"),
         Column::new("method", "", "name in the catalogue, with its scheme"),
         Column::new("cost", "", "evaluations of a step over those of rk4").digits(2),
         Column::new("step_p10", "", "at the same step: 10 % of the ratios").hidden(),
         Column::new("step", "", "at the same step: median; empty where most are lost")
             .heading("same step")
             .digits(2),
+        interval(
+            "step_low",
+            "95 % interval of this median, by ensembles drawn from the starts: its lower end",
+        ),
+        interval("step_high", "its upper end"),
         Column::new("step_p90", "", "at the same step: 90 %").heading("90 %").digits(2),
         Column::new(
             "step_better",
@@ -170,6 +187,8 @@ fn columns() -> Vec<Column> {
         share("step_better_high", "its upper end"),
         Column::new("cost_p10", "", "at the same cost: 10 % of the ratios").hidden(),
         Column::new("cost_median", "", "at the same cost: median").heading("same cost").digits(2),
+        interval("cost_low", "95 % interval of this median: its lower end"),
+        interval("cost_high", "its upper end"),
         Column::new("cost_p90", "", "at the same cost: 90 %").heading("90 %").digits(2),
         Column::new(
             "cost_better",
@@ -194,14 +213,5 @@ mod tests {
             assert!(names.iter().any(|found| found == name), "{name}: {names:?}");
         }
         assert!(!names.iter().any(|name| name == "dmv:6" || name.starts_with("tsit5")), "{names:?}");
-    }
-
-    #[test]
-    fn starts_from_which_both_are_lost_do_not_count() {
-        let lost = f64::INFINITY;
-        let found = Compared::new(&[2.0, lost, lost, 1.0], &[1.0, lost, 1.0, lost]).unwrap();
-        assert_eq!(found.ratios, Quantiles { low: 0.0, median: 2.0, high: lost });
-        assert_eq!(found.better.share, 1.0 / 3.0);
-        assert!(Compared::new(&[lost], &[lost]).is_none());
     }
 }

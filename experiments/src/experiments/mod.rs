@@ -3,6 +3,7 @@
 mod advice;
 mod audit;
 mod chaos;
+mod compared;
 mod conservation;
 mod contestants;
 mod derivative;
@@ -24,6 +25,7 @@ mod long_run;
 mod modified_energy;
 mod order;
 mod phase;
+mod random_bodies;
 mod round_off;
 mod scoreboard;
 mod separatrix;
@@ -60,7 +62,7 @@ pub(crate) const ALL: &[Experiment] = &[
     },
     Experiment {
         name: "fourth-order",
-        question: "which methods of order four lose less of the attitude than rk4, at the same step and at the same cost, over random bodies",
+        question: "which methods of order four lose less of the attitude than rk4, at the same step and at the same cost, over random bodies, near the separatrix too",
         run: fourth_order::run,
     },
     Experiment {
@@ -142,6 +144,11 @@ pub(crate) const ALL: &[Experiment] = &[
         name: "work-precision",
         question: "which method reaches which accuracy at least cost, by body, force and horizon",
         run: work_precision::run,
+    },
+    Experiment {
+        name: "random-bodies",
+        question: "from which share of random bodies and starts a method is the quickest for an attitude error, and how far the others are behind",
+        run: random_bodies::run,
     },
     Experiment {
         name: "modified-energy",

@@ -151,7 +151,7 @@ fn ascending(moments: Vec3<f64>) -> [usize; 3] {
     axes
 }
 
-fn ten(power: i32) -> f64 {
+pub(super) fn ten(power: i32) -> f64 {
     // the nearest double, as a reader writes it
     format!("1e{power}").parse().unwrap_or(0.0)
 }
@@ -206,7 +206,17 @@ struct Outcome {
 /// A start at a random time of the motion at the distance k'² = 10^`decade`, long-axis mode or short-axis mode in turn, and how
 /// long after half a flip it begins.
 fn start(body: &Body, decade: i32, member: u64) -> Result<(Point<f64>, f64), Error> {
-    let mut random = Random::new(SEED).stream(member);
+    near(body, decade, member, RATE, Random::new(SEED).stream(member))
+}
+
+/// The same of a body that turns about its middle axis at `rate` rad/s, with random numbers of the caller's.
+pub(super) fn near(
+    body: &Body,
+    decade: i32,
+    member: u64,
+    rate: f64,
+    mut random: Random,
+) -> Result<(Point<f64>, f64), Error> {
     let moments: Vec3<f64> = body.rotor().moments();
     let [least, b, largest] = ascending(moments);
     let [a, c] = if member.is_multiple_of(2) { [largest, least] } else { [least, largest] };
@@ -216,7 +226,7 @@ fn start(body: &Body, decade: i32, member: u64) -> Result<(Point<f64>, f64), Err
     let square = (1.0 - complement) * (ib - ia);
     let twice_energy = (square + (ic - ib)) / (square * ic + ia * (ic - ib));
     let along = (complement * ia * (1.0 - twice_energy * ic) / (ia - ic)).sqrt();
-    let norm = RATE * ib;
+    let norm = rate * ib;
     let sign = |x: f64| if x < 0.5 { -norm } else { norm };
     let mut m = Vec3::zero();
     (m[a], m[b]) = (sign(random.uniform()) * along, sign(random.uniform()) * (1.0 - along * along).sqrt());

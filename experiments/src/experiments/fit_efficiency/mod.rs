@@ -12,7 +12,7 @@ use polhode_fit::{
 };
 use polhode_pages::figure::{Curve, Figure};
 use polhode_pages::table::{Cell, Column, Table};
-use polhode_rivals::{ATTITUDE_NOISE, RIVALS, Rival};
+use polhode_rivals::{ATTITUDE_NOISE, Given, RIVALS, Rival};
 
 use crate::experiment::{Context, Report};
 use crate::statistics::rounded;
@@ -33,8 +33,10 @@ const BODIES: [(&str, [f64; 3], f64); 4] = [
     ("planar", [1.0, 2.0, 3.0], 0.0),
     ("asymmetric, drag", [1.0, 2.0, 2.6], 0.01),
 ];
-/// One record of so many, but never fewer than two, is given to WENDy, which takes the time of all others together.
+/// One record of so many, but never fewer than two, is given to WENDy, which takes the time of all others together, and one of so
+/// many to the unscented filter.
 const OF_WENDY: u64 = 12;
+const OF_UNSCENTED: u64 = 3;
 const OWN: &str = "weak form, denoised";
 /// Streams of random numbers for those attitudes, apart from those of the records.
 const ATTITUDES: u64 = 1 << 48;
@@ -61,8 +63,10 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         // the same motions at each noise, so that columns compare
         // at every noise the same bodies, starts and deviates
         let stream = ((body as u64) << 32) + k;
+        let some = |one_of: u64| BODIES[body].2 == 0.0 && k < trials.div_ceil(one_of).max(2);
         let asked = |rival: Rival| match rival {
-            Rival::Wendy => BODIES[body].2 == 0.0 && k < trials.div_ceil(OF_WENDY).max(2),
+            Rival::Wendy => some(OF_WENDY),
+            Rival::Unscented => some(OF_UNSCENTED),
             Rival::OutputError => true,
             Rival::OutputErrorWithDrag => BODIES[body].2 > 0.0,
             _ => BODIES[body].2 == 0.0,
@@ -74,8 +78,10 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let mut table = Table::new(
         "efficiency",
         format!(
-            "Error over the Cramer-Rao bound, {trials} records of {seconds} s at 100 Hz, of which WENDy has {}; random axes and starts.",
-            trials.div_ceil(OF_WENDY).max(2).min(trials)
+            "Error over the Cramer-Rao bound, {trials} records of {seconds} s at 100 Hz, of which WENDy has {} and the unscented filter {}; random \
+             axes and starts.",
+            trials.div_ceil(OF_WENDY).max(2).min(trials),
+            trials.div_ceil(OF_UNSCENTED).max(2).min(trials)
         ),
         columns(),
     );
@@ -235,12 +241,13 @@ fn trial(
         Err(_) => broken = true,
     }
     let attitudes = attitudes(&body, omega, &times, stream)?;
+    let given = Given::new(&record, noise, &attitudes);
     let rivals = RIVALS
         .iter()
         .map(|rival| {
             (0..if asked(*rival) { rival.choices() } else { 0 })
                 .map(|k| {
-                    let answer = rival.answer(k, &record, noise, &attitudes)?;
+                    let answer = rival.answer(k, &given)?;
                     let over_bound = over_bound(answer.shape)?;
                     Some(Outcome { over_bound, own: answer.own_square(&j) })
                 })

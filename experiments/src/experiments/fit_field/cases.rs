@@ -36,9 +36,9 @@ pub(super) struct Case {
     drag: f64,
     /// White torque noise, rad/s² √s per trace.
     torque_noise: f64,
-    /// Size of each component, of random sign: constant torque (rad/s² per trace), offset (rad/s), scale errors of the
-    /// axes, misalignment (rad).
+    /// Constant torque in a random direction, rad/s² per trace.
     torque: f64,
+    /// Size of each component, of random sign: offset (rad/s), scale errors of the axes, misalignment (rad).
     offset: f64,
     axis_scales: f64,
     misalignment: f64,
@@ -123,7 +123,7 @@ pub(super) const CASES: [Case; 24] = [
     Case { name: "ms read as s, drag 1 %/s", drag: 1e-2, ..MILLISECONDS_READ },
 ];
 
-/// A case with its random signs.
+/// A case with its random signs and directions.
 pub(super) struct Drawn {
     pub(super) disturbances: Disturbances,
     pub(super) gyroscope: Gyroscope,
@@ -136,11 +136,17 @@ impl Case {
     pub(super) fn draw(&self, noise: f64, momentum: f64, random: &mut Random) -> Drawn {
         let mut sign = || if random.uniform() < 0.5 { -1.0 } else { 1.0 };
         let mut signs = |size: f64| Vector3::from_fn(|_, _| size * sign());
-        let (torque, offset) = (signs(self.torque), signs(self.offset));
+        // three that nothing takes: without them all other numbers would be others
+        let (_, offset) = (signs(1.0), signs(self.offset));
         let (axis_scales, misalignment) = (signs(self.axis_scales), signs(self.misalignment));
         let scale = self.scale * sign();
         let share = random.normal_vector().normalize() * self.wheel;
         let wheel = share * momentum;
+        let torque = if self.torque > 0.0 {
+            random.normal_vector().normalize() * self.torque
+        } else {
+            Vector3::zeros()
+        };
         Drawn {
             unknown_wheel: if self.wheel_known { Vector3::zeros() } else { share },
             disturbances: Disturbances::default()

@@ -1,6 +1,6 @@
 //! The bodies, starts and forces of the comparison.
 
-use polhode::body::{Body, Force, Point, Problem};
+use polhode::body::{Body, Force, Point};
 use polhode::catalogue;
 use polhode::inertia::Inertia;
 use polhode::num::{Dd, Random};
@@ -203,9 +203,9 @@ impl Case {
         Ok(Case { name, kind, what, body, starts, unit, horizons })
     }
 
-    /// Whether nothing acts on the body.
-    pub(super) fn is_free(&self) -> bool {
-        self.body.problem() == Problem::Free
+    /// How many of the horizons every run goes to.
+    pub(super) fn common(&self) -> usize {
+        self.horizons.iter().filter(|horizon| **horizon <= LONG).count()
     }
 
     /// Whether its motion has a closed form.

@@ -4,34 +4,34 @@ use crate::statistics::Quantiles;
 
 /// One method at one step or tolerance, from every start.
 #[derive(Clone, Debug)]
-pub(super) struct Run {
+pub(in crate::experiments) struct Run {
     /// Evaluations per unit of time, by start.
-    pub(super) evaluations: Vec<f64>,
+    pub(in crate::experiments) evaluations: Vec<f64>,
     /// Processor time per unit of time in steps of rk4, by start.
-    pub(super) time: Vec<f64>,
+    pub(in crate::experiments) time: Vec<f64>,
     /// The largest attitude error up to each horizon, by start: infinite where the attitude is lost, `None` where the run was
     /// not made.
-    pub(super) errors: Vec<Vec<Option<f64>>>,
+    pub(in crate::experiments) errors: Vec<Vec<Option<f64>>>,
 }
 
 /// A method, with its runs from coarse to fine.
-pub(super) struct Contestant {
-    pub(super) name: String,
-    pub(super) runs: Vec<Run>,
+pub(in crate::experiments) struct Contestant {
+    pub(in crate::experiments) name: String,
+    pub(in crate::experiments) runs: Vec<Run>,
 }
 
 /// What is counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Currency {
+pub(in crate::experiments) enum Currency {
     Evaluations,
     Time,
 }
 
 /// Free motion is exact at any step of this one: it wins wherever it takes part.
-pub(super) const CLOSED_FORM: &str = "exact-step";
+pub(in crate::experiments) const CLOSED_FORM: &str = "exact-step";
 
 impl Run {
-    pub(super) fn costs(&self, currency: Currency) -> &[f64] {
+    pub(in crate::experiments) fn costs(&self, currency: Currency) -> &[f64] {
         match currency {
             Currency::Evaluations => &self.evaluations,
             Currency::Time => &self.time,
@@ -39,14 +39,14 @@ impl Run {
     }
 
     /// Errors up to a horizon, over the starts from which the run was made.
-    pub(super) fn errors(&self, horizon: usize) -> Option<Quantiles> {
+    pub(in crate::experiments) fn errors(&self, horizon: usize) -> Option<Quantiles> {
         Quantiles::of(self.errors.get(horizon)?.iter().copied().flatten().collect())
     }
 }
 
 impl Contestant {
     /// Median cost and errors of the runs that hold the attitude to a horizon from half of the starts, ascending in cost.
-    pub(super) fn points(&self, horizon: usize, currency: Currency) -> Vec<(f64, Quantiles)> {
+    pub(in crate::experiments) fn points(&self, horizon: usize, currency: Currency) -> Vec<(f64, Quantiles)> {
         let point = |run: &Run| {
             let errors = run.errors(horizon).filter(|errors| errors.median.is_finite())?;
             Some((Quantiles::of(run.costs(currency).to_vec())?.median, errors))
@@ -58,7 +58,13 @@ impl Contestant {
 
     /// The least cost at which the error from one start is at most `accuracy`, between two runs as a power law; infinite where
     /// no run is so accurate.
-    fn cost_from(&self, start: usize, accuracy: f64, horizon: usize, currency: Currency) -> f64 {
+    pub(in crate::experiments) fn cost_from(
+        &self,
+        start: usize,
+        accuracy: f64,
+        horizon: usize,
+        currency: Currency,
+    ) -> f64 {
         let point = |run: &Run| {
             let error = run.errors.get(horizon)?.get(start).copied().flatten()?;
             Some((*run.costs(currency).get(start)?, error))
@@ -77,7 +83,7 @@ impl Contestant {
     }
 
     /// The cost at which errors are at most `accuracy`, over `starts`; `None` where fewer than half of them get so far.
-    pub(super) fn cost_of(
+    pub(in crate::experiments) fn cost_of(
         &self,
         accuracy: f64,
         horizon: usize,
@@ -90,7 +96,7 @@ impl Contestant {
 }
 
 /// All that reach an accuracy, the cheapest first.
-pub(super) fn ranked<'a>(
+pub(in crate::experiments) fn ranked<'a>(
     contestants: &'a [Contestant],
     accuracy: f64,
     horizon: usize,

@@ -1,6 +1,6 @@
 //! Which methods run at which steps, and what a run from every start of a case shows.
 
-use polhode::body::Clock;
+use polhode::body::{Body, Clock, Problem};
 use polhode::method::{AnyMethod, Claimed, method, without_projections};
 use polhode::run::{RunError, Watch};
 use polhode::truth::{Care, Ending, Judged, LOST, Truth};
@@ -29,18 +29,18 @@ const IDLE: usize = 2;
 
 /// How far a scale goes.
 #[derive(Clone, Copy)]
-pub(super) struct Budget {
+pub(in crate::experiments) struct Budget {
     /// Evaluations per unit of time that the finest step takes at most.
-    pub(super) evaluations: f64,
+    pub(in crate::experiments) evaluations: f64,
     /// Of the tolerances every so many are taken.
-    pub(super) tolerances: usize,
+    pub(in crate::experiments) tolerances: usize,
 }
 
 /// A method at one step or tolerance.
-pub(super) struct Entry {
-    pub(super) method: Box<dyn AnyMethod>,
+pub(in crate::experiments) struct Entry {
+    pub(in crate::experiments) method: Box<dyn AnyMethod>,
     /// In s; `None` where the method chooses it.
-    pub(super) step: Option<f64>,
+    pub(in crate::experiments) step: Option<f64>,
 }
 
 /// What the runs of an entry showed.
@@ -55,16 +55,21 @@ pub(super) struct Found {
     pub(super) ending: String,
 }
 
-/// Every method that takes the case, each from coarse to fine: the runs end where finer steps [bring nothing](is_settled).
-pub(super) fn families(case: &Case, budget: Budget) -> Result<Vec<Vec<Entry>>, Error> {
+/// Every method that takes `body`, each from coarse to fine in parts of `unit` s: the runs end where finer steps
+/// [bring nothing](is_settled).
+pub(in crate::experiments) fn families(
+    body: &Body,
+    unit: f64,
+    budget: Budget,
+) -> Result<Vec<Vec<Entry>>, Error> {
     let mut names: Vec<String> = without_projections().iter().map(|method| method.name()).collect();
     names.extend(SCHEMES.into_iter().chain(TAKEN_BACK).map(String::from));
     // without torque kick-drift is exact-step, whatever its scheme
-    names.retain(|name| !(case.is_free() && name.starts_with("kick-drift")));
+    names.retain(|name| !(body.problem() == Problem::Free && name.starts_with("kick-drift")));
     let mut families = Vec::new();
     for name in names {
         let of_name = method(&name).map_err(unexpected)?;
-        let Some(claims) = of_name.claims(case.body.problem()) else { continue };
+        let Some(claims) = of_name.claims(body.problem()) else { continue };
         let mut family = Vec::new();
         if of_name.tolerance().is_some() {
             for tolerance in TOLERANCES.iter().step_by(budget.tolerances) {
@@ -81,12 +86,11 @@ pub(super) fn families(case: &Case, budget: Budget) -> Result<Vec<Vec<Entry>>, E
                     break;
                 }
                 let method = method(&name).map_err(unexpected)?;
-                family.push(Entry { method, step: Some(step * case.unit) });
+                family.push(Entry { method, step: Some(step * unit) });
             }
         }
-        let taken = |entry: &Entry| {
-            entry.method.prepare_f64(Clock::new(entry.step.unwrap_or(1.0)), &case.body).is_ok()
-        };
+        let taken =
+            |entry: &Entry| entry.method.prepare_f64(Clock::new(entry.step.unwrap_or(1.0)), body).is_ok();
         if family.first().is_some_and(taken) {
             families.push(family);
         }
@@ -95,26 +99,26 @@ pub(super) fn families(case: &Case, budget: Budget) -> Result<Vec<Vec<Entry>>, E
 }
 
 /// The runs of one family.
-pub(super) fn contestant(family: &[Entry], found: &[Found]) -> Option<Contestant> {
+pub(in crate::experiments) fn contestant(family: &[Entry], runs: Vec<Run>) -> Option<Contestant> {
     // one name for all tolerances
     let method = &family.first()?.method;
     let name = method.name();
     let base = name.split(':').next().unwrap_or(&name).to_owned();
     let name = if method.tolerance().is_some() { base } else { name };
-    Some(Contestant { name, runs: found.iter().map(|found| found.run.clone()).collect() })
+    Some(Contestant { name, runs })
 }
 
-/// Whether the last `IDLE` of the runs of a family, from coarse to fine, have brought no smaller median error to any horizon.
-pub(super) fn is_settled(case: &Case, found: &[Found]) -> bool {
-    let common = case.horizons.iter().filter(|horizon| **horizon <= LONG).count();
-    let Some(before) = found.len().checked_sub(IDLE).filter(|before| *before > 0) else { return false };
-    let least = |runs: &[Found], horizon: usize| {
-        let medians = runs.iter().filter_map(|one| one.run.errors(horizon)).map(|errors| errors.median);
+/// Whether the last `IDLE` of the runs of a family, from coarse to fine, have brought no smaller median error to any of the first
+/// `horizons`.
+pub(in crate::experiments) fn is_settled(horizons: usize, runs: &[&Run]) -> bool {
+    let Some(before) = runs.len().checked_sub(IDLE).filter(|before| *before > 0) else { return false };
+    let least = |runs: &[&Run], horizon: usize| {
+        let medians = runs.iter().filter_map(|run| run.errors(horizon)).map(|errors| errors.median);
         medians.fold(f64::INFINITY, f64::min)
     };
-    (0..common).all(|horizon| {
-        let known = least(&found[..before], horizon);
-        known.is_finite() && least(&found[before..], horizon) >= known
+    (0..horizons).all(|horizon| {
+        let known = least(&runs[..before], horizon);
+        known.is_finite() && least(&runs[before..], horizon) >= known
     })
 }
 
@@ -126,7 +130,7 @@ impl Entry {
         motions: &Motions,
         known_time: &mut Option<StepTime>,
     ) -> Result<Found, Error> {
-        let (unit, horizons) = (case.unit, case.horizons);
+        let (problem, unit, horizons) = (case.body.problem(), case.unit, case.horizons);
         // one that chooses its steps is read at the looks of the first horizon
         let step = self.step.unwrap_or(horizons[0] * unit / 32.0);
         let run = |motion: &Truth, horizon: f64| {
@@ -143,7 +147,7 @@ impl Entry {
         let mut all = motions.all.iter().map(|motion| run(motion, common)).collect::<Result<Vec<_>, _>>()?;
         let evaluations: Vec<f64> = all
             .iter()
-            .map(|measured| measured.as_ref().map_or(f64::INFINITY, |one| self.per_unit(case, one)))
+            .map(|measured| measured.as_ref().map_or(f64::INFINITY, |one| self.per_unit(problem, unit, one)))
             .collect();
         let mut errors: Vec<Vec<Option<f64>>> =
             horizons.iter().map(|horizon| errors_of(&all, horizon * unit, common * unit)).collect();
@@ -157,7 +161,7 @@ impl Entry {
             errors[last] = errors_of(&all, end * unit, end * unit);
             errors[last].resize(motions.all.len(), None);
         }
-        let claims = self.method.claims(case.body.problem());
+        let claims = self.method.claims(problem);
         let varies = self.step.is_none() || claims.is_some_and(|claims| claims.cost.solves > 0);
         let time = match (*known_time, motions.all.first()) {
             (Some(time), _) if !varies => time,
@@ -183,16 +187,16 @@ impl Entry {
         })
     }
 
-    /// Evaluations per unit of time.
-    fn per_unit(&self, case: &Case, measured: &Judged) -> f64 {
-        let cost = self.method.claims(case.body.problem()).map(|claims| claims.cost).unwrap_or_default();
-        let last = measured.looks.last().map(|look| look.evaluations as f64 / (look.elapsed / case.unit));
+    /// Evaluations per `unit` s on a body with that problem.
+    pub(in crate::experiments) fn per_unit(&self, problem: Problem, unit: f64, measured: &Judged) -> f64 {
+        let cost = self.method.claims(problem).map(|claims| claims.cost).unwrap_or_default();
+        let last = measured.looks.last().map(|look| look.evaluations as f64 / (look.elapsed / unit));
         last.map(|found| found * weight(cost)).filter(|cost| *cost > 0.0).unwrap_or(f64::INFINITY)
     }
 }
 
 /// The largest attitude error of each run up to `horizon` s; `None` where the runs end before.
-fn errors_of(runs: &[Option<Judged>], horizon: f64, end: f64) -> Vec<Option<f64>> {
+pub(in crate::experiments) fn errors_of(runs: &[Option<Judged>], horizon: f64, end: f64) -> Vec<Option<f64>> {
     let error = |measured: &Option<Judged>| {
         let seen = measured.as_ref().and_then(|measured| measured.largest_attitude_error(horizon));
         let seen = seen.filter(|error| *error <= LOST);

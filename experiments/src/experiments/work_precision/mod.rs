@@ -2,8 +2,8 @@
 //! horizons.
 
 mod cases;
-mod contest;
-mod entry;
+pub(super) mod contest;
+pub(super) mod entry;
 mod panel;
 mod tables;
 mod which;
@@ -13,11 +13,12 @@ use polhode_files::error::Error;
 use polhode_pages::figure::{Figure, sheet};
 
 use self::cases::{Case, FEW};
-use self::contest::Currency;
-use self::entry::{Budget, contestant, families};
+use self::contest::{Currency, Run};
+use self::entry::{Budget, Found, contestant, families};
 use self::tables::{Contest, costs, error_row, is_free, winners};
 use crate::experiment::{Context, Report};
 
+pub(super) use tables::GENERAL;
 pub(crate) use which::Which;
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
@@ -29,16 +30,17 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     };
     let mut parts = Vec::new();
     for (k, case) in cases.iter().enumerate() {
-        for family in families(case, budget)? {
+        for family in families(&case.body, case.unit, budget)? {
             parts.push((k, family));
         }
     }
     let found: Vec<Result<_, Error>> = context.in_parallel(parts, |(k, family)| {
-        let (mut time, mut runs) = (None, Vec::new());
+        let (mut time, mut runs): (_, Vec<Found>) = (None, Vec::new());
         for entry in &family {
             runs.push(entry.measure(&cases[k], &motions[k], &mut time)?);
             // the next ones would cost more for no more
-            if entry::is_settled(&cases[k], &runs) {
+            let known: Vec<&Run> = runs.iter().map(|found| &found.run).collect();
+            if entry::is_settled(cases[k].common(), &known) {
                 break;
             }
         }
@@ -53,7 +55,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     for part in found {
         let (k, family, runs) = part?;
         family.iter().zip(&runs).for_each(|(entry, run)| errors.push(error_row(&cases[k], entry, run)));
-        contests[k].contestants.extend(contestant(&family, &runs));
+        let runs = runs.into_iter().map(|found| found.run).collect();
+        contests[k].contestants.extend(contestant(&family, runs));
     }
     let fewest = winners("winners", &contests, Currency::Evaluations);
     let mut report = Report::default();

@@ -16,7 +16,7 @@ const ACCURACIES: [f64; 6] = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 const COLUMNS: [f64; 5] = [1e2, 1e3, 1e4, 1e5, 1e6];
 
 /// Methods that know nothing of rotation: their costs are always given.
-const GENERAL: [&str; 9] =
+pub(in crate::experiments) const GENERAL: [&str; 9] =
     ["explicit-euler", "rk4", "rk4-normalized", "rk8", "tsit5", "dop853", "taylor", "gauss:4", "gauss:8"];
 
 /// Of the others, the costs up to so many times the least.
