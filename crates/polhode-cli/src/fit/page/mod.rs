@@ -84,7 +84,12 @@ pub(super) fn refused(
 
 /// How the files were read.
 fn read(as_read: &AsRead) -> impl Iterator<Item = Block> {
-    as_read.sentences().into_iter().map(|sentence| Block::Paragraph(format!("{}.", capital(&sentence))))
+    // names of files stay as they are
+    let begun = |sentence: String| match sentence.strip_prefix("read:") {
+        Some(rest) => format!("Read:{rest}"),
+        None => sentence,
+    };
+    as_read.sentences().into_iter().map(move |sentence| Block::Paragraph(format!("{}.", begun(sentence))))
 }
 
 fn answer(e: &Estimate, as_read: &AsRead) -> Vec<Block> {
@@ -98,7 +103,7 @@ fn answer(e: &Estimate, as_read: &AsRead) -> Vec<Block> {
     let [a, b, c] = [0, 1, 2].map(|k| format!("{:.*}", digits(e.sigma_principal[k]).min(6), e.principal[k]));
     let head = ["", "value", "95 %, statistical", "systematic"].map(String::from).to_vec();
     let mut rows: Vec<Vec<String>> = (0..3)
-        .map(|k| row(format!("I{}", k + 1), e.principal[k], e.sigma_principal[k], off.map(|o| o[k])))
+        .map(|k| row(format!("I{}/trace", k + 1), e.principal[k], e.sigma_principal[k], off.map(|o| o[k])))
         .collect();
     for (k, name) in ["I1/I3", "I2/I3"].into_iter().enumerate() {
         let squares = sensor_lines(e).map(|line| line.ratios[k] * line.ratios[k]);
@@ -184,7 +189,8 @@ pub(in crate::fit) fn minus(number: &str) -> String {
 
 /// With a capital letter first.
 pub(in crate::fit) fn capital(words: &str) -> String {
-    format!("{}{}", words[..1].to_uppercase(), &words[1..])
+    let mut letters = words.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 fn next(e: &Estimate) -> Vec<Block> {
@@ -260,9 +266,9 @@ fn sensor(e: &Estimate) -> Vec<Block> {
     }
     if !e.systematic.is_empty() {
         parts.push(Block::Paragraph(
-            "Change of the moments with errors that the fit takes to be zero:".into(),
+            "Change of the moments, shares of the trace, with errors that the fit takes to be zero:".into(),
         ));
-        let head = ["error", "size", "unit", "I1", "I2", "I3 (of the trace)"].map(String::from).to_vec();
+        let head = ["error", "size", "unit", "I1", "I2", "I3"].map(String::from).to_vec();
         let rows = e.systematic.iter().map(|line| {
             let mut cells = vec![line.name.to_string(), format!("{}", line.size), line.unit.to_string()];
             cells.extend(line.principal.iter().map(|x| minus(&format!("{x:.1e}"))));

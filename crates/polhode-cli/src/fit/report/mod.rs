@@ -8,6 +8,7 @@ mod text;
 
 use polhode::num::Shown;
 use polhode_fit::{AverageAxis, Estimate, Identifiability, Method, ModelFit, Record, Systematic};
+use polhode_pages::screen::wrapped;
 use polhode_pages::table::{Column, Format, Table, row};
 use serde_json::{Value, json};
 
@@ -17,7 +18,6 @@ pub(super) use self::text::tensor;
 use super::as_read::AsRead;
 use super::attitudes::Read;
 use super::flights::Spans;
-use polhode_pages::screen::wrapped;
 
 pub(super) const ENTRIES: [(&str, usize, usize); 6] =
     [("xx", 0, 0), ("yy", 1, 1), ("zz", 2, 2), ("xy", 0, 1), ("xz", 0, 2), ("yz", 1, 2)];
