@@ -140,7 +140,7 @@ fn every_number_has_a_unit_and_each_segment_the_answer_without_it() {
             assert!(segment["shift"].as_f64().unwrap() > 0.0);
         }
         // a row of the CSV has a unit, or is a plain number
-        let rows = output(&format!("fit {file} --format csv"));
+        let rows = run(&format!("fit {file} --format csv")).out;
         assert!(rows.lines().all(|row| row.split(',').count() == 4), "{rows}");
         for part in ["principal_1,", "triangle_slack,", "rms_rate,", "noise_sigma,"] {
             let row = rows.lines().find(|row| row.starts_with(part)).unwrap();
