@@ -111,6 +111,9 @@ impl fmt::Display for ReadAs {
 /// Samples a second, by the median of these times between two of them.
 pub(crate) fn sample_rate(mut steps: Vec<f64>) -> Option<f64> {
     steps.retain(|step| *step > 0.0);
-    steps.sort_by(f64::total_cmp);
-    steps.get(steps.len() / 2).map(|step| 1.0 / step)
+    if steps.is_empty() {
+        return None;
+    }
+    let middle = steps.len() / 2;
+    Some(1.0 / *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
