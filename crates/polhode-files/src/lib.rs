@@ -37,6 +37,7 @@ pub mod npy;
 pub mod numbers;
 pub mod orbit;
 mod read;
+mod read_as;
 pub mod record;
 pub mod robots;
 mod table;
@@ -49,4 +50,5 @@ pub mod wheel;
 
 pub use error::{Broken, Error, Rule, TableError};
 pub use read::{read, read_own};
+pub use read_as::{NamedBy, ReadAs};
 pub use table::{ColumnNames, ReadOptions, SignedAxes};

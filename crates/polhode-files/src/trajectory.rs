@@ -7,6 +7,7 @@ use polhode::audit::{Attitudes, Convention, Digits, Direction, Frame, Quaternion
 use polhode::units::AngleUnit;
 
 use crate::error::{Error, Rule, TableError};
+use crate::read_as::ReadAs;
 use crate::table::{Columns, Group, Quantity, ReadOptions, Table, digits};
 use crate::text::visible;
 
@@ -24,6 +25,8 @@ pub struct FoundTrajectory {
     pub comments: Vec<String>,
     /// Names of the columns that are not read.
     pub unread: Vec<String>,
+    /// In which units times and angular velocities are: the former were brought to s, the latter are as they stand.
+    pub read_as: ReadAs,
 }
 
 /// Columns that are not read of which the names are told.
@@ -106,6 +109,8 @@ fn found(mut table: Table) -> Result<FoundTrajectory, TableError> {
     if rows.bodies.is_empty() {
         return Err(TableError::of(table.name(), Rule::Rows));
     }
+    let times = rows.bodies.first().map_or(&[][..], |body| &body.times);
+    let read_as = table.read_as(times.windows(2).map(|pair| pair[1] - pair[0]).collect());
     let several = rows.bodies.len() > 1;
     let bodies =
         rows.bodies.into_iter().map(|body| (body.name.clone().filter(|_| several), body.trajectory()));
@@ -115,6 +120,7 @@ fn found(mut table: Table) -> Result<FoundTrajectory, TableError> {
         counts_steps: table.counts_steps(),
         unread: table.header.unread().map(|name| visible(name).into_owned()).collect(),
         comments: table.comments,
+        read_as,
     })
 }
 

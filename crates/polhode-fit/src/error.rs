@@ -8,6 +8,7 @@ use crate::physical::failure::SolverFailure;
 use crate::poses::fault::PoseFault;
 use crate::report::averages::AverageAxis;
 use crate::report::identifiability::Identifiability;
+use crate::thresholds::noise::MOST;
 use crate::thresholds::test_functions::TESTS_PER_RADIUS;
 use crate::units::product::{UnitProduct, alternatives};
 
@@ -48,7 +49,8 @@ pub enum FitError {
     /// Too few samples for even one test function.
     #[error(
         "{samples} samples, at most {longest} without a gap (segments: {segments}, left out for flat tops: {saturated}); \
-         a fit needs a segment of at least {needed} samples: record longer or faster"
+         a fit needs a segment of at least {needed} samples: record longer or faster{}",
+        if *saturated > 0 { ", with a sensor of a larger range" } else { "" }
     )]
     TooFewSamples {
         /// Samples.
@@ -65,7 +67,7 @@ pub enum FitError {
     /// The angular velocity is zero, or a quarter and more of its mean square is noise.
     #[error(
         "the rates have a root mean square of {rms:.3e} rad/s and a noise of {noise:.3e} rad/s: the rotation is too \
-         slow for this noise; spin the body faster"
+         slow for this noise; spin the body{}", faster(*noise)
     )]
     NoRotation {
         /// Root mean square rate, rad/s.
@@ -74,13 +76,13 @@ pub enum FitError {
         noise: f64,
     },
     /// The record determines fewer than five numbers of the tensor.
-    #[error("the record does not determine the tensor: {}", .0.verdict())]
+    #[error("the record does not determine the tensor: {}. {}", .0.verdict(), capital(&.0.next_record()))]
     Unidentifiable(Box<Identifiability>),
     /// The iteration did not converge at any radius of the test functions, although the rates change.
     #[error(
         "the rates change, but the iteration did not converge in {rounds} rounds at any radius of the test functions: the \
          noise of {noise:.3e} rad/s may hide the motion, torques may act, or the body may be slender; record longer, \
-         with a larger wobble, or set the radius{}{}{}{}",
+         with a larger wobble{}{}{}{}",
         slowed(*fall), smaller(*factor), known(axes), left_handed(mirror.as_deref())
     )]
     Unsettled {
@@ -106,7 +108,8 @@ pub enum FitError {
     /// Momenta of wheels or torques of the record contradict its rates.
     #[error(
         "the momenta of wheels and the torques of the record contradict its rates: the best body with them leaves {} of the \
-         squared derivative of the rates unexplained; look at their axes, signs and units, and at whether something else drives the body",
+         squared derivative of the rates unexplained; look at their axes, signs and units. A record with the wheels at rest and without these \
+         torques tells whether something else drives the body",
         per_cent(*unexplained)
     )]
     Contradicted {
@@ -173,7 +176,8 @@ pub enum FitError {
     /// Other units of the rates or times explain the record, and those in which it was read do not.
     #[error(
         "the units look mistaken: {}? A free body then leaves {} of the squared derivative of the rates unexplained, and {} \
-         as read; the motion tells the product of rate and time alone. Name the units, or switch this check off",
+         as read; the motion tells the product of rate and time alone. Name the units, or switch this check off. To find them, turn the sensor \
+         once about one axis: the sum of rate times time step is 6.28 in rad/s and s, 360 in deg/s and s",
         alternatives(products), per_cent(*better), per_cent(*unexplained)
     )]
     Units {
@@ -187,7 +191,8 @@ pub enum FitError {
     /// The body turns by more than half a turn from sample to sample.
     #[error(
         "from one sample to the next the body turns by {turn:.3e} rad, with a time step of {step:.3e} s: beyond pi = 3.14 no \
-         motion can be told from its samples; the units of rates or times are probably mistaken, else record faster"
+         motion can be told from its samples; the units of rates or times are probably mistaken, else record more than {:.3e} samples a second",
+        *turn / (core::f64::consts::PI * *step)
     )]
     Undersampled {
         /// Median of |ω| Δt, rad.
@@ -216,7 +221,7 @@ pub enum FitError {
     },
     /// A wheel is to be calibrated from a record that does not tell its speed.
     #[error(
-        "no wheel turns in the record: each segment must hold the speed of the wheel, somewhere not zero"
+        "no wheel turns in the record: record again with the wheel running; each segment must hold its speed, somewhere not zero"
     )]
     NoWheelSpeed,
     /// A wheel is to be calibrated from a record that has torques.
@@ -341,7 +346,7 @@ pub enum FitError {
     /// Test functions that no segment has room for.
     #[error(
         "a radius of {radius} s needs a segment of {:.4} s, which holds two test functions with {needed} samples in each; \
-         the longest lasts {longest} s", (2.0 + 0.5 / TESTS_PER_RADIUS) * radius
+         the longest lasts {longest} s: set a smaller radius, or record longer", (2.0 + 0.5 / TESTS_PER_RADIUS) * radius
     )]
     Radius {
         /// The radius, s.
@@ -460,10 +465,20 @@ fn slowed(fall: Option<f64>) -> String {
 fn smaller(factor: Option<f64>) -> String {
     factor.map_or(String::new(), |factor| {
         format!(
-            ". With rate x time {factor:.4} times as large or larger, a nearly spherical body would move like this: are the \
-             units right?"
+            ". Make sure of the units: with rate x time {factor:.4} times as large or larger, a nearly spherical body would move like this"
         )
     })
+}
+
+/// The rate from which on noise is at most a quarter of the mean square.
+fn faster(noise: f64) -> String {
+    let needed = noise * (3.0 / MOST - 3.0).sqrt();
+    if needed > 0.0 { format!(" at {needed:.1e} rad/s or faster") } else { String::new() }
+}
+
+fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 fn known(axes: &[AverageAxis]) -> String {

@@ -26,7 +26,7 @@ use crate::report::facts::Facts;
 use crate::report::mirror::reversed;
 use crate::report::nuisance::Agreement;
 use crate::report::parts::scatter;
-use crate::report::segments::summaries;
+use crate::report::segments::{Summary, summaries};
 use crate::report::sensor::{ROTOR, suspect};
 use crate::report::systematic::errors;
 use crate::report::warnings::has_zero_inputs;
@@ -124,9 +124,12 @@ pub(crate) fn fitted(record: &Record, settings: &Settings) -> Result<Fitted, Fit
         {
             return FitError::UntoldSensor;
         }
+        let is_unsettled = matches!(error, FitError::Unsettled { .. });
         if let FitError::Unsettled { mirror, .. } | FitError::PriorContradicted { mirror, .. } = &mut error {
-            *mirror = reversed(record)
-                .and_then(|other| Some(Box::new(fitted(&other, settings).ok()?.estimate.principal)));
+            let other = reversed(record).and_then(|other| Some(fitted(&other, settings).ok()?.estimate));
+            // a tensor that the reversed record hardly tells explains nothing
+            let is_sure = |e: &Estimate| e.sigma_principal.iter().all(|sigma| *sigma <= UNCERTAIN);
+            *mirror = other.filter(|e| !is_unsettled || is_sure(e)).map(|e| Box::new(e.principal));
         }
         let is_of_motion =
             matches!(error, FitError::Unsettled { .. } | FitError::Driven { .. } | FitError::Units { .. });
@@ -230,6 +233,13 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
     let of_choice = joint.of_tensor(&spread);
     let joint = joint.widened(&of_choice).ok_or_else(information)?;
     let of_parts = differing.as_ref().map(|differing| differing.of(&joint.kept));
+    let added = of_parts.as_ref().map_or(spread, |more| {
+        let of_tensor = more.rows(joint.kept.len(), 5);
+        let added = of_tensor * of_tensor.transpose();
+        spread + Form::from_fn(|i, k| added[(i, k)])
+    });
+    let complete = |segment: Summary| segment.complete(deviation * deviation, &added);
+    let per_segment = per_segment.into_iter().map(complete).collect();
     let joint = match of_parts {
         Some(more) => joint.widened(&more).ok_or_else(information)?,
         None => joint,

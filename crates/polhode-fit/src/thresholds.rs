@@ -148,6 +148,8 @@ thresholds! {
     next_step: "what to do next" {
         SURE: f64 = 1.959_963_984_540_054, "deviations of half a 95 % interval", DERIVED;
         UNEVEN: f64 = 10.0, "deviation of the weakest combination over that of the best from which on it is named", UNMEASURED;
+        HELPS: f64 = 2.0, "how much better another start must tell it to be advised", "another_start_that_would_not_help_is_not_advised";
+        PLANNED: usize = 500, "samples of the record that is planned for that", UNMEASURED;
     }
     judgement: "refusals" {
         EXCLUDED: [f64; 2] = [35.888_186_879_672_87, 38.258_336_377_209_69],
@@ -213,6 +215,7 @@ thresholds! {
     identifiability: "what a record determines" {
         VAGUE: f64 = 0.1,
             "deviation of an undetermined number, over the trace: tensors differ by 0.4 at most", "pure_spin_tells_an_axis_and_no_ratio";
+        LONGER: f64 = 20.0, "times as long as which a record is not advised to be", UNMEASURED;
         PURE: f64 = 0.05, "mean square rate across the spin, over that along it, of a pure spin", UNMEASURED;
         PRINCIPAL: f64 = 0.1,
             "largest part of a null tensor that a principal axis leaves off it", "two_pure_spins_tell_all_axes_and_no_ratio";

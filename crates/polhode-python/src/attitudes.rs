@@ -141,7 +141,7 @@ fn samples(
     t: &Bound<'_, PyAny>,
     rates: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<(Vec<f64>, Vec<Vector3<f64>>)> {
-    if let Ok(Record(record)) = t.extract::<Record>() {
+    if let Ok(Record { record, .. }) = t.extract::<Record>() {
         return match (rates, record.segments.as_slice()) {
             (Some(_), _) => Err(refused("rates: the record has its own; leave them out")),
             (None, [segment]) => Ok((segment.times().to_vec(), segment.rates().to_vec())),

@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Vector3};
 use polhode::{inertia as masses, record};
+use polhode_files::ReadAs;
 use polhode_fit::{
     self as fits, Attached, CarrierError, CarrierRecords, FitError, Flights, ProofBody, Settings, during,
     fit_carrier, flights,
@@ -65,6 +66,8 @@ impl MeasuredBody {
 #[pyclass(frozen, module = "polhode")]
 pub(crate) struct CarrierEstimate {
     found: fits::CarrierEstimate,
+    /// How the files of each record were read.
+    read_as: Vec<(Attached, Vec<ReadAs>)>,
     warnings: Vec<String>,
 }
 
@@ -135,7 +138,10 @@ impl CarrierEstimate {
         let all = PyDict::new(py);
         for (attached, found) in &self.found.records {
             let warnings = found.warnings.iter().map(ToString::to_string).collect();
-            let one = Estimate { found: found.clone(), flights: Vec::new(), warnings };
+            let of_file = self.read_as.iter().filter(|(of, _)| of == attached);
+            let read_as = of_file.flat_map(|(_, files)| files.clone()).collect();
+            let (found, flights, unused) = (found.clone(), Vec::new(), Vec::new());
+            let one = Estimate { found, flights, unused, read_as, warnings };
             all.set_item(attached.to_string(), Bound::new(py, one)?)?;
         }
         Ok(all)
@@ -243,18 +249,26 @@ pub(crate) fn fitted_carrier(
         .with_torque(model(torque)?)
         .with_quantum(quantum.map(|value| positive("quantum", value)).transpose()?)
         .with_sensor(priors([gyro_bias, gyro_scale, gyro_axis_scales, gyro_misalignment, gyro_skew])?);
+    let mut read_as = Vec::new();
+    let mut known = |attached: Attached, (record, files): (record::Record, Vec<ReadAs>)| {
+        read_as.push((attached, files));
+        record
+    };
     let tumbles = Tumbles {
-        carrier: tumble("carrier", carrier)?,
-        proof: on_carrier,
-        object: object.map(|object| tumble("object", object)).transpose()?,
-        both: beside,
+        carrier: known(Attached::Nothing, tumble("carrier", carrier)?),
+        proof: on_carrier.map(|(found, body)| (known(Attached::Proof, found), body)),
+        object: match object {
+            Some(object) => Some(known(Attached::Object, tumble("object", object)?)),
+            None => None,
+        },
+        both: beside.map(|(found, body)| (known(Attached::ObjectAndProof, found), body)),
         placed,
         unknown_wheel,
     };
     let (found, mut warnings) = aside(py, move |_| tumbles.fitted(&settings))?.map_err(refused)?;
     warnings.extend(found.all_warnings());
     warnings.iter().try_for_each(|warning| warn(py, warning))?;
-    Ok(CarrierEstimate { found, warnings })
+    Ok(CarrierEstimate { found, read_as, warnings })
 }
 
 /// The records, and what is known of what tumbled in them.
@@ -343,7 +357,7 @@ impl Known {
 }
 
 /// A record: one of a file, several, or times and rates.
-fn tumble(name: &'static str, value: &Bound<'_, PyAny>) -> PyResult<record::Record> {
+fn tumble(name: &'static str, value: &Bound<'_, PyAny>) -> PyResult<(record::Record, Vec<ReadAs>)> {
     let of_record = |error: PyErr| refused(format!("{name}: {}", error.value(value.py())));
     let Ok(parts) = value.cast::<PyTuple>() else {
         return recorded(value, None, None, None).map_err(of_record);

@@ -1,6 +1,7 @@
 //! Fitted tensors.
 
 use nalgebra::SMatrix;
+use polhode_files::ReadAs;
 use polhode_fit::{self as fits, Nuisance};
 use polhode_pages::figure::{Curve, Figure, Scale};
 use polhode_pages::table::{Column, Table, row};
@@ -9,13 +10,17 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{array, matrix};
 use crate::error::refused;
+use crate::parts;
 use crate::shown;
 
 /// A fitted tensor and how far to trust it. Moments are shares of the trace, as free motion tells no size.
 #[pyclass(frozen, module = "polhode")]
 pub(crate) struct Estimate {
     pub(crate) found: fits::Estimate,
-    pub(crate) flights: Vec<(f64, f64)>,
+    pub(crate) flights: Vec<fits::Flight>,
+    /// Names of columns.
+    pub(crate) unused: Vec<String>,
+    pub(crate) read_as: Vec<ReadAs>,
     pub(crate) warnings: Vec<String>,
 }
 
@@ -178,7 +183,7 @@ impl Estimate {
     }
 
     /// What each model of the torque makes of the record: a dict by model of `gain` (log-likelihood less that without a torque), `share`,
-    /// `principal`, `sigma_principal`, `unexplained` and `held_out`; of a fit to attitudes in closed form those of no torque, drag and a small constant torque.
+    /// `principal`, `sigma_principal`, `ratios`, `sigma_ratios`, `unexplained` and `held_out`; of a fit to attitudes in closed form those of no torque, drag and a small constant torque.
     #[getter]
     fn models<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let found = PyDict::new(py);
@@ -188,6 +193,8 @@ impl Estimate {
             entry.set_item("share", one.share)?;
             entry.set_item("principal", array(py, one.principal.to_vec(), &[3])?)?;
             entry.set_item("sigma_principal", array(py, one.sigma_principal.to_vec(), &[3])?)?;
+            entry.set_item("ratios", array(py, one.ratios.to_vec(), &[2])?)?;
+            entry.set_item("sigma_ratios", array(py, one.sigma_ratios.to_vec(), &[2])?)?;
             entry.set_item("unexplained", one.unexplained)?;
             entry.set_item("held_out", one.held_out)?;
             found.set_item(one.model.to_string(), entry)?;
@@ -237,30 +244,181 @@ impl Estimate {
     }
 
     /// What was found of measured attitudes: a dict of `noise_sigma`, `residual` and `local_noise` (of one component of the rotation vector,
-    /// rad), `largest_turn`, rad, `left_out` and `repeated` (numbers of samples), and, with rates beside them, `alignment`, the rotation vector
-    /// from the axes of the attitudes to those of the rates, rad, with `alignment_sigma`; `None` of a fit to rates alone.
+    /// rad), `noise_given`, `largest_turn`, rad, `left_out` and `repeated` (numbers of samples), and, with rates beside them, `alignment`, the
+    /// rotation vector from the axes of the attitudes to those of the rates, rad, with `alignment_sigma`, and `moving`, by how much the axes
+    /// move against each other, rad, with `moving_gain`, the gain of log-likelihood; `None` of a fit to rates alone.
     #[getter]
     fn attitudes<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
-        let Some(of) = &self.found.attitudes else { return Ok(None) };
-        let found = PyDict::new(py);
-        found.set_item("noise_sigma", of.noise_sigma)?;
-        found.set_item("residual", of.residual)?;
-        found.set_item("local_noise", of.local_noise)?;
-        found.set_item("largest_turn", of.largest_turn)?;
-        found.set_item("left_out", of.left_out)?;
-        found.set_item("repeated", of.repeated)?;
-        if let Some(alignment) = of.alignment {
-            found
-                .set_item("alignment", array(py, alignment.turn.scaled_axis().as_slice().to_vec(), &[3])?)?;
-            found.set_item("alignment_sigma", array(py, alignment.sigma.to_vec(), &[3])?)?;
-        }
-        Ok(Some(found))
+        self.found.attitudes.as_ref().map(|of| parts::attitudes(py, of)).transpose()
+    }
+
+    /// Root mean square of the size of the rate, rad/s.
+    #[getter]
+    fn rms_rate(&self) -> f64 {
+        self.found.rms_rate
+    }
+
+    /// Step of each component of the readings, rad/s; 0 where there is none.
+    #[getter]
+    fn quanta<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        array(py, self.found.quanta.to_vec(), &[3])
+    }
+
+    /// How the tensor was found, in words.
+    #[getter]
+    fn method(&self) -> &'static str {
+        self.found.method.words()
+    }
+
+    /// How many of the five numbers of the shape the record determines.
+    #[getter]
+    fn rank(&self) -> usize {
+        self.found.identifiability.rank
+    }
+
+    /// Standard deviations of the five combinations that the record determines, ascending, shares of the trace.
+    #[getter]
+    fn spectrum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        array(py, self.found.identifiability.deviations.to_vec(), &[5])
+    }
+
+    /// Standard deviation over the Cramer-Rao bound; `None` where there is none.
+    #[getter]
+    fn bound_ratio(&self) -> Option<f64> {
+        self.found.bound_ratio
+    }
+
+    /// Constraints that hold the answer: a dict of `name` and `multiplier` for each.
+    #[getter]
+    fn active_constraints<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        let one = |of: &fits::ActiveConstraint| {
+            let entry = PyDict::new(py);
+            entry.set_item("name", of.constraint.to_string())?;
+            entry.set_item("multiplier", of.multiplier)?;
+            Ok(entry)
+        };
+        self.found.active_constraints.iter().map(one).collect()
+    }
+
+    /// Residuals of the conditions of optimality: a dict of `stationarity`, `violation`, `dual_violation` and `rounds`.
+    #[getter]
+    fn certificate<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let (of, entry) = (&self.found.certificate, PyDict::new(py));
+        entry.set_item("stationarity", of.stationarity)?;
+        entry.set_item("violation", of.violation)?;
+        entry.set_item("dual_violation", of.dual_violation)?;
+        entry.set_item("rounds", of.rounds)?;
+        Ok(entry)
+    }
+
+    /// Standard deviations by which the physical law and limits moved the tensor.
+    #[getter]
+    fn pull(&self) -> f64 {
+        self.found.pull
+    }
+
+    /// Degrees of freedom: equations beyond the unknowns.
+    #[getter]
+    fn dof(&self) -> usize {
+        self.found.dof
+    }
+
+    /// Relative change of |J w| and its standard deviation, 1/s.
+    #[getter]
+    fn momentum_drift(&self) -> Option<(f64, f64)> {
+        self.found.momentum_trend.map(|trend| (trend.rate, trend.sigma))
+    }
+
+    /// The same of twice the energy, w J w.
+    #[getter]
+    fn energy_drift(&self) -> Option<(f64, f64)> {
+        self.found.energy_trend.map(|trend| (trend.rate, trend.sigma))
+    }
+
+    /// Correlation of neighbouring residuals, and its standard deviation under white noise.
+    #[getter]
+    fn whiteness(&self) -> (f64, f64) {
+        (self.found.whiteness.correlation, self.found.whiteness.sigma)
+    }
+
+    /// The model of the torque that the fit reckons with.
+    #[getter]
+    fn torque_model(&self) -> String {
+        self.found.torque.model.to_string()
+    }
+
+    /// Its gain of log-likelihood over no torque, where both were fitted.
+    #[getter]
+    fn torque_gain(&self) -> Option<f64> {
+        self.found.torque.gain
+    }
+
+    /// I1/I3 and I2/I3 as they would be without the torque.
+    #[getter]
+    fn ratios_without<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.found.torque.ratios_without.map(|ratios| array(py, ratios.to_vec(), &[2])).transpose()
+    }
+
+    /// Distance of the record from a prior tensor, chi squared, and its degrees of freedom.
+    #[getter]
+    fn prior(&self) -> Option<(f64, usize)> {
+        self.found.prior.map(|of| (of.chi2, of.dof))
+    }
+
+    /// Power spectral density of the torque noise, (rad/s^2)^2 s, the mean of the segments by their weights.
+    #[getter]
+    fn rho(&self) -> f64 {
+        self.found.per_segment.iter().map(|s| s.torque_noise * s.weight).sum()
+    }
+
+    /// What each segment contributes: a dict for each of `segment`, from 1, `samples`, `noise_sigma`, rad/s, `torque_noise`, (rad/s^2)^2 s,
+    /// `weight`, its share of the information, and what the others say: `ratios_without`, I1/I3 and I2/I3, `sigma_ratios_without`, and
+    /// `shift`, how far the tensor moves, in standard deviations.
+    #[getter]
+    fn per_segment<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        parts::per_segment(py, &self.found)
+    }
+
+    /// Samples that were left out because they stand out of their neighbours: a dict for each of `segment`, from 1, `line` and `time`, s.
+    #[getter]
+    fn spikes<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        parts::spikes(py, &self.found.spikes)
+    }
+
+    /// Correlations of the entries xx, yy, zz, xy, xz, yz of the shape.
+    #[getter]
+    fn correlation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        six(py, &self.found.correlation())
+    }
+
+    /// What would make the answer surer, a sentence each, the largest error first.
+    #[getter]
+    fn next_steps(&self) -> Vec<String> {
+        self.found.next_steps().iter().map(ToString::to_string).collect()
+    }
+
+    /// Names of the columns of the record that were not read.
+    #[getter]
+    fn unused_columns(&self) -> Vec<String> {
+        self.unused.clone()
+    }
+
+    /// How the files of the record were read, as `Record.read_as`; empty of arrays, which are in rad/s and s.
+    #[getter]
+    fn read_as<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        parts::read_as(py, &self.read_as)
+    }
+
+    /// Why each flight begins and ends where it does.
+    #[getter]
+    fn flight_limits(&self) -> Vec<(String, String)> {
+        self.flights.iter().map(|flight| (flight.before.to_string(), flight.after.to_string())).collect()
     }
 
     /// Start and end of each flight that was fitted, s; empty where windows were given.
     #[getter]
     fn flights(&self) -> Vec<(f64, f64)> {
-        self.flights.clone()
+        self.flights.iter().map(|flight| (flight.start, flight.end)).collect()
     }
 
     /// What limits the use of the estimate, a sentence each; Python warnings say the same.
@@ -274,15 +432,16 @@ impl Estimate {
             Column::new("quantity", "", ""),
             Column::new("value", "", "").digits(7),
             Column::new("sigma", "", "").digits(2),
+            Column::new("unit", "", ""),
         ];
         let mut table = Table::new("fit", "Inertia from measured angular velocity.", columns);
         for (k, name) in ["I1 / trace", "I2 / trace", "I3 / trace"].into_iter().enumerate() {
-            table.push(row![name, self.found.principal[k], self.found.sigma_principal[k]]);
+            table.push(row![name, self.found.principal[k], self.found.sigma_principal[k], ""]);
         }
-        table.push(row!["I1 / I3", self.found.ratios[0], self.found.sigma_ratios[0]]);
-        table.push(row!["I2 / I3", self.found.ratios[1], self.found.sigma_ratios[1]]);
+        table.push(row!["I1 / I3", self.found.ratios[0], self.found.sigma_ratios[0], ""]);
+        table.push(row!["I2 / I3", self.found.ratios[1], self.found.sigma_ratios[1], ""]);
         for one in self.found.torque.coefficients.iter().chain(&self.found.nuisances) {
-            table.push(row![one.name, one.value, one.sigma]);
+            table.push(row![one.name, one.value, one.sigma, one.unit]);
         }
         let mut text = table.terminal();
         for warning in &self.warnings {

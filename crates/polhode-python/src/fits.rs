@@ -3,9 +3,10 @@
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::audit::{Attitudes, Direction, QuaternionOrder, Reading, Trajectory};
 use polhode::record::{self, Segment};
+use polhode_files::ReadAs;
 use polhode_fit::{
-    self as fits, FitError, Flights, Known, Poses, Prior, SensorPriors, Settings, TorqueModel, during,
-    flights,
+    self as fits, FitError, Flight, Flights, Known, Poses, Prior, SensorPriors, Settings, TorqueModel,
+    during, flights,
 };
 use pyo3::prelude::*;
 
@@ -81,9 +82,14 @@ pub(crate) fn fitted(
         .map(|windows| Ok::<_, PyErr>(windows.rows::<2>(None)?.into_iter().map(|[a, b]| (a, b)).collect()))
         .transpose()?;
     let order = Order::of(order)?;
+    let mut read_as = Vec::new();
     let measured = match attitude {
         None if attitude_noise.is_some() => return Err(refused("attitude_noise: given without attitude")),
-        None => Measured::rates(recorded(t, rates, wheel, applied_torque)?, windows)?,
+        None => {
+            let (record, files) = recorded(t, rates, wheel, applied_torque)?;
+            read_as = files;
+            Measured::rates(record, windows)?
+        }
         Some(_) if wheel.is_some() || applied_torque.is_some() => {
             return Err(refused(
                 "wheel, applied_torque: a fit of attitudes does not reckon with them; leave them out",
@@ -117,17 +123,18 @@ pub(crate) fn fitted(
         .with_torque(model(torque)?)
         .with_quantum(sigma("quantum", quantum)?)
         .with_sensor(priors([gyro_bias, gyro_scale, gyro_axis_scales, gyro_misalignment, gyro_skew])?);
-    let (found, spans, is_part) = aside(py, move |_| measured.fitted(&settings))?.map_err(refused)?;
+    let unused = measured.unused();
+    let (found, flights, is_part) = aside(py, move |_| measured.fitted(&settings))?.map_err(refused)?;
     let mut warnings: Vec<String> = found.warnings.iter().map(ToString::to_string).collect();
     if is_part {
         warnings.push(format!(
             "the record as a whole is not that of a free body: the fit uses the flights that were found in it, {} of them; windows \
              names others",
-            spans.len()
+            flights.len()
         ));
     }
     warnings.iter().try_for_each(|warning| warn(py, warning))?;
-    Ok(Estimate { found, flights: spans, warnings })
+    Ok(Estimate { found, flights, unused, read_as, warnings })
 }
 
 /// Errors of the sensor by their standard deviations: offset, rad/s, scale, scales of the axes, misalignment, rad, and skew, s.
@@ -201,9 +208,20 @@ impl Measured {
         }))
     }
 
-    /// The estimate; start and end of each flight that was found, and whether these are only part of the record.
-    #[allow(clippy::type_complexity, reason = "it is taken apart at once")]
-    fn fitted(self, settings: &Settings) -> Result<(fits::Estimate, Vec<(f64, f64)>, bool), FitError> {
+    /// Names of the columns that were not read, each once.
+    fn unused(&self) -> Vec<String> {
+        let Measured::Rates { record, .. } = self else { return Vec::new() };
+        let mut names: Vec<String> = Vec::new();
+        for (_, name) in record.unused_columns() {
+            if !names.contains(name) {
+                names.push(name.clone());
+            }
+        }
+        names
+    }
+
+    /// The estimate; each flight that was found, and whether these are only part of the record.
+    fn fitted(self, settings: &Settings) -> Result<(fits::Estimate, Vec<Flight>, bool), FitError> {
         let (mut record, whole) = match self {
             Measured::Attitudes(poses) => return Ok((fits::fit_poses(&poses, settings)?, Vec::new(), false)),
             Measured::Rates { record, whole } => (record, whole),
@@ -211,11 +229,11 @@ impl Measured {
         let (mut spans, mut is_part) = (Vec::new(), false);
         if whole {
             let Flights { list, whole, .. } = flights(&record, settings)?;
-            spans.extend(list.iter().map(|flight| (flight.start, flight.end)));
             is_part = !whole;
             if is_part {
                 record = during(&record, &list);
             }
+            spans = list;
         }
         Ok((fits::fit(&record, settings)?, spans, is_part))
     }
@@ -237,16 +255,16 @@ pub(crate) fn model(torque: &str) -> PyResult<TorqueModel> {
     })
 }
 
-/// Times and rates, a record, or several of one body.
+/// Times and rates, a record, or several of one body, and how files among them were read.
 pub(crate) fn recorded(
     t: &Bound<'_, PyAny>,
     rates: Option<&Bound<'_, PyAny>>,
     wheel: Option<&Bound<'_, PyAny>>,
     torque: Option<&Bound<'_, PyAny>>,
-) -> PyResult<record::Record> {
-    if let Ok(Record(record)) = t.extract::<Record>() {
+) -> PyResult<(record::Record, Vec<ReadAs>)> {
+    if let Ok(Record { record, read_as }) = t.extract::<Record>() {
         return match (rates, wheel, torque) {
-            (None, None, None) => Ok(record),
+            (None, None, None) => Ok((record, read_as)),
             _ => Err(refused("rates, wheel, applied_torque: the record has its own; leave them out")),
         };
     }
@@ -254,8 +272,9 @@ pub(crate) fn recorded(
         let records: Vec<Record> = t
             .extract()
             .map_err(|_| refused("rates: missing; give times and rates, a Record, or a list of records"))?;
-        let joined = records.into_iter().map(|Record(record)| record).reduce(record::Record::join);
-        return joined.ok_or_else(|| refused("t: a list without records"));
+        let files = records.iter().flat_map(|record| record.read_as.clone()).collect();
+        let joined = records.into_iter().map(|of| of.record).reduce(record::Record::join);
+        return joined.map(|record| (record, files)).ok_or_else(|| refused("t: a list without records"));
     }
     let times = Numbers::of("t", t)?.list()?;
     let n = Some(times.len());
@@ -266,7 +285,9 @@ pub(crate) fn recorded(
     let rates = vectors("rates", rates)?.unwrap_or_default();
     let (wheel, torque) = (vectors("wheel", wheel)?, vectors("applied_torque", torque)?);
     if wheel.is_none() && torque.is_none() {
-        return record::Record::from_samples(&times, &rates).map_err(refused);
+        return record::Record::from_samples(&times, &rates)
+            .map(|record| (record, Vec::new()))
+            .map_err(refused);
     }
     let mut segment = Segment::new("record", times, rates).map_err(refused)?;
     if let Some(wheel) = wheel {
@@ -277,5 +298,5 @@ pub(crate) fn recorded(
     }
     let mut record = record::Record::default();
     record.segments.push(segment);
-    Ok(record)
+    Ok((record, Vec::new()))
 }

@@ -22,6 +22,7 @@ mod json;
 mod links;
 mod masses;
 mod motions;
+mod parts;
 mod phases;
 mod runs;
 mod samples;

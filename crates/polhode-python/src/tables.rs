@@ -4,13 +4,14 @@ use std::path::PathBuf;
 
 use polhode::audit::{self, Attitudes, Convention};
 use polhode::record;
-use polhode_files::{Error, ReadOptions, trajectory};
+use polhode_files::{Error, ReadAs, ReadOptions, trajectory};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::array;
 use crate::error::warn;
 use crate::files::heard;
+use crate::parts;
 
 /// Where the rows of a table come from.
 pub(crate) enum Rows {
@@ -123,20 +124,24 @@ fn vectors<'py>(py: Python<'py>, rows: Option<&[[f64; 3]]>) -> PyResult<Option<B
 /// A record of measured angular velocities, in segments without gaps: for `fit`.
 #[pyclass(frozen, module = "polhode", from_py_object)]
 #[derive(Clone)]
-pub(crate) struct Record(pub(crate) record::Record);
+pub(crate) struct Record {
+    pub(crate) record: record::Record,
+    pub(crate) read_as: Vec<ReadAs>,
+}
 
 #[pymethods]
 impl Record {
     /// Number of segments without gaps.
     #[getter]
     fn segments(&self) -> usize {
-        self.0.segments.len()
+        self.record.segments.len()
     }
 
     /// Times of all segments, s.
     #[getter]
     fn t<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let times: Vec<f64> = self.0.segments.iter().flat_map(|segment| segment.times()).copied().collect();
+        let times: Vec<f64> =
+            self.record.segments.iter().flat_map(|segment| segment.times()).copied().collect();
         let n = times.len();
         array(py, times, &[n])
     }
@@ -144,21 +149,28 @@ impl Record {
     /// Angular velocities of all segments in sensor axes, rad/s: (n, 3).
     #[getter]
     fn rates<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let rates = self.0.segments.iter().flat_map(|segment| segment.rates());
+        let rates = self.record.segments.iter().flat_map(|segment| segment.rates());
         let rates: Vec<f64> = rates.flat_map(|rate| rate.iter().copied().collect::<Vec<_>>()).collect();
         let n = rates.len() / 3;
         array(py, rates, &[n, 3])
     }
 
+    /// How its files were read: a dict for each of `file`, `rate_unit` and `time_unit`, what named them (`header`, `setting`, `layout` of the
+    /// file, `values`, or `none`: rad/s and s were taken), `sample_rate`, Hz, `axes` as they were set, and `taken_as_right_handed`.
+    #[getter]
+    fn read_as<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
+        parts::read_as(py, &self.read_as)
+    }
+
     fn __len__(&self) -> usize {
-        self.0.samples()
+        self.record.samples()
     }
 
     fn __repr__(&self) -> String {
-        let segments = self.0.segments.len();
+        let segments = self.record.segments.len();
         format!(
             "Record({} samples in {segments} segment{})",
-            self.0.samples(),
+            self.record.samples(),
             if segments == 1 { "" } else { "s" }
         )
     }
@@ -175,7 +187,7 @@ pub(crate) fn record_of<'py>(
         warn(py, &format!("rows left out: {count}, beside {samples} that are read; the first: {first}"))?;
     }
     found.remarks.iter().try_for_each(|remark| warn(py, remark))?;
-    Ok(Bound::new(py, Record(found.record))?.into_any())
+    Ok(Bound::new(py, Record { record: found.record, read_as: vec![found.read_as] })?.into_any())
 }
 
 pub(crate) fn trajectories<'py>(

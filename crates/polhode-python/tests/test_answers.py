@@ -111,6 +111,36 @@ def test_a_fit_finds_the_ratios_and_says_how_well():
     assert_allclose(np.trace(sized.inertia), 5.5)
 
 
+def test_a_fit_says_how_its_record_was_read_and_what_to_do_next(tmp_path):
+    t, rates = simulated()
+    path = tmp_path / "record.csv"
+    rows = "".join(f"{a},{x},{y},{z},20\n" for a, (x, y, z) in zip(1000 * t, np.degrees(rates)))
+    path.write_text("t (ms),wx,wy,wz,temperature\n" + rows)
+    record = polhode.read(path, rate_unit="deg/s", axes="x,y,z")
+    read_as, = record.read_as
+    assert (read_as["rate_unit"], read_as["rate_unit_by"]) == ("deg/s", "setting")
+    assert (read_as["time_unit"], read_as["time_unit_by"]) == ("ms", "header")
+    assert abs(read_as["sample_rate"] / 100 - 1) < 1e-9 and read_as["axes"] == "x, y, z" and read_as["taken_as_right_handed"]
+    estimate = polhode.fit(record)
+    assert estimate.read_as == [read_as] and estimate.unused_columns == ["temperature"]
+    assert abs(estimate.ratios - polhode.fit(t, rates).ratios).max() < 1e-9 and polhode.fit(t, rates).read_as == []
+    assert estimate.next_steps and estimate.method.startswith("weak form") and estimate.rank == 5
+    assert abs(estimate.rms_rate / np.sqrt((rates**2).sum(axis=1).mean()) - 1) < 1e-3
+    assert_allclose(np.diag(estimate.correlation), 1)
+    assert estimate.per_segment[0]["ratios_without"] is None and estimate.torque_model == "none"
+
+
+def test_each_segment_says_what_the_answer_is_without_it():
+    parts = [simulated(seed=seed) for seed in range(3)]
+    t = np.concatenate([part[0][:1000] + 100 * k for k, part in enumerate(parts)])
+    rates = np.concatenate([part[1][1000 * k : 1000 * (k + 1)] for k, part in enumerate(parts)])
+    estimate = polhode.fit(t, rates)
+    assert [one["segment"] for one in estimate.per_segment] == [1, 2, 3]
+    for one in estimate.per_segment:
+        assert (one["sigma_ratios_without"] > estimate.sigma_ratios).all()
+        assert (abs(one["ratios_without"] - [0.4, 0.8]) < 5 * one["sigma_ratios_without"]).all() and one["shift"] > 0
+
+
 def test_warnings_of_a_fit_are_python_warnings():
     t, rates = simulated()
     rates[1000] += 1

@@ -68,7 +68,10 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         "Inertia from attitudes: {trials} records of {seconds} s a row, random axes and starts, 1 rad/s.{are_checked}"
     );
     let mut table = Table::new("attitudes", caption, columns());
-    let (mut pooled, mut failures) = (Summary::default(), Vec::new());
+    let (mut pooled, mut pooled_differenced, mut failures) =
+        (Summary::default(), Summary::default(), Vec::new());
+    // records, and those that were refused wrongly
+    let mut all = (0, 0);
     for (&(body, noise, rate), cell) in cells.iter().zip(results.chunks(trials as usize)) {
         let name = format!("{}, {} deg, {} Hz", BODIES[body].0, NOISES[noise], rates[rate]);
         // a record that cannot be made is the failure of its row
@@ -107,7 +110,27 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             ));
         }
         pooled.add(&own);
+        pooled_differenced.add(&differenced);
+        all.0 += made;
+        all.1 += wrongly;
     }
+    let coverage = Interval::new(pooled.covered, pooled.answered);
+    table.push(row![
+        "all",
+        None::<f64>,
+        None::<f64>,
+        pooled.over_bound(),
+        pooled.interval().map(|(low, _)| rounded(low)),
+        pooled.interval().map(|(_, high)| rounded(high)),
+        coverage.map(|c| rounded(c.share)),
+        coverage.map(|c| rounded(c.low)),
+        coverage.map(|c| rounded(c.high)),
+        all.0 - pooled.answered,
+        all.1,
+        pooled_differenced.over_bound(),
+        Interval::new(pooled_differenced.covered, pooled_differenced.answered).map(|c| rounded(c.share)),
+        all.0 - pooled_differenced.answered,
+    ]);
     let conclusion = match (
         pooled.over_bound(),
         pooled.interval(),
@@ -261,7 +284,7 @@ fn columns() -> Vec<Column> {
         Column::new(
             "body",
             "",
-            "principal moments: asymmetric 1, 2, 2.6; near-symmetric 1, 2, 2.1; planar 1, 2, 3; slender 1, 3, 3.3",
+            "principal moments: asymmetric 1, 2, 2.6; near-symmetric 1, 2, 2.1; planar 1, 2, 3; slender 1, 3, 3.3; all: the records of all rows together",
         ),
         Column::new(
             "noise",

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use clap::{Args, ValueEnum};
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::audit::{Attitudes, Convention, Direction, Frame, Reading, Trajectory};
+use polhode_files::ReadAs;
 use polhode_files::error::{Error, tell, warn};
 use polhode_files::numbers::positive;
 use polhode_files::text::visible;
@@ -75,6 +76,8 @@ pub(super) struct Read {
     pub(super) form: String,
     /// The direction that names or flags state.
     pub(super) stated: Option<Direction>,
+    /// Units of each file.
+    pub(super) read_as: Vec<ReadAs>,
 }
 
 impl PoseArguments {
@@ -137,7 +140,7 @@ impl PoseArguments {
         let found = trajectory::read(path, &reading.table())?;
         let remark = found.remark();
         let claims = self.convention.claims(found.claims);
-        let FoundTrajectory { mut bodies, counts_steps, .. } = found;
+        let FoundTrajectory { mut bodies, counts_steps, mut read_as, .. } = found;
         let (1, Some((_, rows))) = (bodies.len(), bodies.pop()) else {
             return Err(refused(
                 "it has several bodies, and a tensor is of one",
@@ -167,10 +170,14 @@ impl PoseArguments {
         };
         let poses = match self.from {
             Some(From::Both) => {
+                read_as.axes = reading.axes();
                 let rates = rates(&rows, &convention, &claims, reading, &name)?;
                 Poses::with_rates(&name, &rows.times, &attitudes, &rates)
             }
-            _ => Poses::new(&name, &rows.times, &attitudes),
+            _ => {
+                read_as.rates = None;
+                Poses::new(&name, &rows.times, &attitudes)
+            }
         };
         let poses = poses.map_err(|error| Error::Input(error.to_string()))?;
         let poses = if claims.attitude.is_none() { poses.with_open_direction() } else { poses };
@@ -180,7 +187,7 @@ impl PoseArguments {
             plain if plain.is_empty() => rows.attitude.as_ref().map_or("", Attitudes::name).into(),
             plain => plain,
         };
-        Ok(Read { poses, form, stated: claims.attitude })
+        Ok(Read { poses, form, stated: claims.attitude, read_as: vec![read_as] })
     }
 }
 
@@ -197,7 +204,8 @@ fn joined(before: Read, next: Read, path: &Path) -> Result<Read, Error> {
         ));
     }
     let form = if before.form == next.form { before.form } else { format!("{}; {}", before.form, next.form) };
-    Ok(Read { poses: before.poses.join(next.poses), form, stated: before.stated })
+    let read_as = [before.read_as, next.read_as].concat();
+    Ok(Read { poses: before.poses.join(next.poses), form, stated: before.stated, read_as })
 }
 
 /// The convention of the attitudes. What the motion cannot tell must be stated: of a quaternion the place of the scalar, since the other

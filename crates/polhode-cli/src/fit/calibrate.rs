@@ -7,7 +7,8 @@ use polhode_fit::{FitError, Record, Settings, WheelCalibration, calibrate_wheel}
 use polhode_pages::table::{Column, Format, Table, row};
 use serde_json::{Value, json};
 
-use super::report::{SURE, nuisances, scaled, with_error};
+use super::as_read::AsRead;
+use super::report::{SURE, nuisances, scaled, unit_column, with_error, wrapped_lines};
 
 /// The answer as text, rows or JSON; `names` are those of the files.
 pub(super) fn report(
@@ -16,7 +17,7 @@ pub(super) fn report(
     axis: &Vector3<f64>,
     settings: &Settings,
     names: &str,
-    format: Format,
+    (format, as_read): (Format, &AsRead),
 ) -> Result<String, Error> {
     let wheel = calibrate_wheel(record, body, settings).map_err(|error| {
         let message = format!("{names}: {error}");
@@ -26,13 +27,13 @@ pub(super) fn report(
         }
     })?;
     Ok(match format {
-        Format::Table => text(&wheel, axis),
+        Format::Table => text(&wheel, axis, as_read),
         Format::Csv => rows(&wheel).csv(),
-        Format::Json => format!("{:#}\n", object(&wheel, axis, record)),
+        Format::Json => format!("{:#}\n", object(&wheel, axis, (record, as_read))),
     })
 }
 
-fn text(wheel: &WheelCalibration, axis: &Vector3<f64>) -> String {
+fn text(wheel: &WheelCalibration, axis: &Vector3<f64>, as_read: &AsRead) -> String {
     let mut lines = vec![
         format!("wheel inertia: {} kg m^2 (95 %)", scaled(wheel.inertia, SURE * wheel.sigma)),
         format!("axis: ({}, {}, {})", axis.x, axis.y, axis.z),
@@ -44,6 +45,7 @@ fn text(wheel: &WheelCalibration, axis: &Vector3<f64>) -> String {
         "{} samples, segments: {}, noise {:.3e} rad/s",
         wheel.samples, wheel.segments, wheel.noise_sigma
     ));
+    lines.extend(wrapped_lines(&as_read.sentences()));
     lines.push(format!("half width of the test functions: {:.4} s", wheel.radius));
     lines.push(format!("chi^2 per degree of freedom: {:.3} ({} degrees)", wheel.chi2_per_dof, wheel.dof));
     lines.join("\n") + "\n"
@@ -54,16 +56,17 @@ fn rows(wheel: &WheelCalibration) -> Table {
         Column::new("quantity", "", "what"),
         Column::new("value", "", "estimate"),
         Column::new("sigma", "", "standard deviation"),
+        unit_column(),
     ];
     let mut table = Table::new("wheel", "Inertia of a wheel.", columns);
-    table.push(row!["wheel_inertia", wheel.inertia, wheel.sigma]);
-    wheel.nuisances.iter().for_each(|n| table.push(row![n.name, n.value, n.sigma]));
-    table.push(row!["noise_sigma", wheel.noise_sigma, None::<f64>]);
-    table.push(row!["chi2_per_dof", wheel.chi2_per_dof, (2.0 / wheel.dof.max(1) as f64).sqrt()]);
+    table.push(row!["wheel_inertia", wheel.inertia, wheel.sigma, "kg m^2"]);
+    wheel.nuisances.iter().for_each(|n| table.push(row![n.name, n.value, n.sigma, n.unit]));
+    table.push(row!["noise_sigma", wheel.noise_sigma, None::<f64>, "rad/s"]);
+    table.push(row!["chi2_per_dof", wheel.chi2_per_dof, (2.0 / wheel.dof.max(1) as f64).sqrt(), ""]);
     table
 }
 
-fn object(wheel: &WheelCalibration, axis: &Vector3<f64>, record: &Record) -> Value {
+fn object(wheel: &WheelCalibration, axis: &Vector3<f64>, (record, as_read): (&Record, &AsRead)) -> Value {
     json!({
         "wheel_inertia": wheel.inertia,
         "sigma": wheel.sigma,
@@ -75,6 +78,7 @@ fn object(wheel: &WheelCalibration, axis: &Vector3<f64>, record: &Record) -> Val
         "radius": wheel.radius,
         "chi2_per_dof": wheel.chi2_per_dof,
         "dof": wheel.dof,
+        "read_as": as_read.json(),
         "unused_columns": super::report::unused(record),
     })
 }

@@ -1,6 +1,7 @@
 //! `polhode fit`: inertia from measured angular velocity.
 
 mod arguments;
+mod as_read;
 mod attitudes;
 mod calibrate;
 mod carrier;
@@ -28,6 +29,7 @@ use crate::flags::record::RecordArguments;
 use crate::memory;
 use crate::plot::Picture;
 use arguments::{KnownArguments, PriorArguments, SensorArguments, Torque};
+use as_read::AsRead;
 use attitudes::{Chosen, PoseArguments, Read};
 use carrier::CarrierArguments;
 use flights::Spans;
@@ -47,11 +49,12 @@ const EXAMPLES: &str = "Examples:
 
 /// Inertia tensor of a torque-free body from its measured angular velocity or attitude
 ///
-/// The axes of the sensor are taken to be right-handed: the rates cannot tell, and left-handed axes give another tensor, which the
-/// report names; --axes undoes a mirrored axis. Attitudes (quaternions, matrices, Euler angles, modified Rodrigues parameters) are fitted
-/// where a file has no rates, or as --from says: by maximum likelihood on the exact motion, which also tells body to space from space to
-/// body; rates beside them may have axes of their own. Without one of --trace, --momentum, --twice-energy, --moment or --prior-inertia the tensor is known up to a factor, and its trace is
-/// set to 1; columns `hx (N m s)`, hy, hz (momentum of wheels, with this unit in the header) and tx, ty, tz (known torque, N m) make it absolute, too. Exit code 1: the record does not determine the tensor; what it does determine is printed.
+/// The axes of the sensor are taken as right-handed, which rates cannot tell: the report names the tensor of left-handed axes, too, and
+/// --axes undoes a mirrored axis. Attitudes (quaternions, matrices, Euler angles, modified Rodrigues parameters) are fitted where a file
+/// has no rates, or where --from says so, by maximum likelihood on the exact motion. Free rotation tells the tensor up to a factor, and
+/// its trace is then set to 1. It is absolute with one of --trace, --momentum, --twice-energy, --moment and --prior-inertia, or with columns
+/// `hx (N m s)`, hy, hz (momentum of wheels, the unit in the header) or tx, ty, tz (known torque, N m). Exit code 1: the record does not
+/// determine the tensor; the report says what it does determine, and which record would tell more.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Fit {
@@ -140,10 +143,11 @@ impl Fit {
             Chosen::Attitudes { .. } => Some(self.attitudes()?),
             Chosen::Rates { .. } => None,
         };
-        let mut record = match &read {
-            Some(read) => read.poses.rates(),
+        let (mut record, files) = match &read {
+            Some(read) => (read.poses.rates(), read.read_as.clone()),
             None => self.reading.record(&self.data, self.wheel.momentum())?,
         };
+        let as_read = AsRead(files);
         chosen.tell();
         let settings = self.settings()?;
         let format = Format::of(self.format, self.out.as_deref())?;
@@ -159,7 +163,7 @@ impl Fit {
                 &axis,
                 &settings,
                 &self.names(),
-                format,
+                (format, &as_read),
             )?);
         }
         let mut spans = Spans::default();
@@ -181,14 +185,14 @@ impl Fit {
                     file.write_whole(&page::refused(
                         &reason,
                         facts.as_ref(),
-                        &record,
+                        (&record, &as_read),
                         &spans,
                         &self.names(),
                         form,
                     )?)?;
                 }
                 if let Some(facts) = facts {
-                    output.write_whole(&facts.report(&record, &spans, format))?;
+                    output.write_whole(&facts.report(&record, &spans, (&as_read, &reason), format))?;
                 }
                 let message = format!("{}: {reason}", self.names());
                 return Err(if failed { Error::Failed(message) } else { Error::Input(message) });
@@ -205,11 +209,19 @@ impl Fit {
         let page = match page {
             Some((file, form)) => Some((
                 file,
-                page::estimated(&estimate, &record, &motion, (&spans, read.as_ref()), &self.names(), form)?,
+                page::estimated(
+                    &estimate,
+                    &record,
+                    &motion,
+                    (&spans, read.as_ref(), &as_read),
+                    &self.names(),
+                    form,
+                )?,
             )),
             None => None,
         };
-        output.write_whole(&report::identified(&estimate, &record, &spans, read.as_ref(), format))?;
+        let sources = (&spans, read.as_ref(), &as_read);
+        output.write_whole(&report::identified(&estimate, &record, sources, format))?;
         if let Some(remark) = self.known.other_hand(&estimate)? {
             warn(&remark);
         }

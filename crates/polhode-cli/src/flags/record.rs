@@ -9,7 +9,7 @@ use polhode::units::RateUnit;
 use polhode_files::error::{Error, TableError, warn};
 use polhode_files::numbers::{number, numbers};
 use polhode_files::record::{self, FoundRecord, Parts};
-use polhode_files::{ReadOptions, SignedAxes};
+use polhode_files::{ReadAs, ReadOptions, SignedAxes};
 
 use super::table::{TableArguments, rate_unit};
 
@@ -87,28 +87,33 @@ impl RecordArguments {
     }
 
     /// All files and windows as one record; `wheel` is the momentum of a wheel per rad/s of its speed.
-    pub(crate) fn record(&self, data: &[PathBuf], wheel: Option<Vector3<f64>>) -> Result<Record, Error> {
-        let [all] = self.records([data], wheel)?;
-        Ok(all)
+    pub(crate) fn record(
+        &self,
+        data: &[PathBuf],
+        wheel: Option<Vector3<f64>>,
+    ) -> Result<(Record, Vec<ReadAs>), Error> {
+        let ([all], read_as) = self.records([data], wheel)?;
+        Ok((all, read_as))
     }
 
-    /// The same of several records, their files counted through.
+    /// The same of several records, their files counted through, and how each file was read.
     pub(crate) fn records<const N: usize>(
         &self,
         data: [&[PathBuf]; N],
         wheel: Option<Vector3<f64>>,
-    ) -> Result<[Record; N], Error> {
+    ) -> Result<([Record; N], Vec<ReadAs>), Error> {
         self.check_windows(data.iter().map(|files| files.len()).sum())?;
         self.tell_axes();
-        let mut all = core::array::from_fn(|_| Record::default());
+        let (mut all, mut read_as) = (core::array::from_fn(|_| Record::default()), Vec::new());
         let each = data.iter().enumerate().flat_map(|(of, files)| files.iter().map(move |path| (of, path)));
         for (k, (of, path)) in each.enumerate() {
-            let record = self.read(path, wheel)?.record;
-            if let Some(cut) = self.cut(record, k)? {
+            let found = self.read(path, wheel)?;
+            if let Some(cut) = self.cut(found.record, k)? {
                 all[of] = core::mem::take(&mut all[of]).join(cut);
+                read_as.push(found.read_as);
             }
         }
-        Ok(all)
+        Ok((all, read_as))
     }
 
     /// One file and its windows, part by part.
@@ -129,15 +134,12 @@ impl RecordArguments {
 
     pub(crate) fn tell_axes(&self) {
         if let Some(axes) = self.axes {
-            let [x, y, z] = axes.apply([1.0, 2.0, 3.0]).map(|k| {
-                format!("{}{}", if k < 0.0 { "-" } else { "" }, ["x", "y", "z"][k.abs() as usize - 1])
-            });
             let kind = if axes.is_mirror() {
                 "a mirror: left-handed columns become right-handed axes"
             } else {
                 "a turn of the axes"
             };
-            warn(&format!("the rates about x, y, z are those of the columns {x}, {y}, {z} ({kind})"));
+            warn(&format!("the rates about x, y, z are those of the columns {axes} ({kind})"));
         }
     }
 

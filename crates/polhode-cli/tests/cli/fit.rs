@@ -110,7 +110,7 @@ fn what_is_simulated_is_found_again() {
 
     // rows, and text no wider than a page
     let rows = output(&format!("fit {record}"));
-    assert!(rows.starts_with("quantity,value,sigma\nprincipal_1,0.178"), "{rows}");
+    assert!(rows.starts_with("quantity,value,sigma,unit\nprincipal_1,0.178"), "{rows}");
     // (1, 2, 2.6)/5.6 with the ratios of Euler's equations negated
     for part in ["\nunexplained,", "\nmirror_principal_1,0.13", "\nmirror_principal_3,0.459"] {
         assert!(rows.contains(part), "{part}: {rows}");

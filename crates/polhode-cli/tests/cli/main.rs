@@ -19,6 +19,7 @@ mod fit;
 mod fit_attitudes;
 mod fit_carrier;
 mod fit_inputs;
+mod fit_report;
 mod flights;
 mod forces;
 mod general;

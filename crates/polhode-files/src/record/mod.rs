@@ -10,6 +10,7 @@ use nalgebra::Vector3;
 use polhode::record::Record;
 
 use crate::error::{Error, TableError};
+use crate::read_as::ReadAs;
 pub use crate::table::ReadOptions;
 use crate::table::Table;
 use inputs::Inputs;
@@ -28,6 +29,8 @@ pub struct FoundRecord {
     pub remarks: Vec<String>,
     /// Whether the columns are angles by their unit, which [`ReadOptions::increments`] allows: increments since the row before, rad.
     pub are_increments: bool,
+    /// In which units they were read.
+    pub read_as: ReadAs,
 }
 
 /// A record from a text of rows, which messages call `file`.
@@ -92,5 +95,8 @@ fn found(
         return Err(skipped.swap_remove(0));
     }
     let are_increments = rows.table.are_increments;
-    Ok(FoundRecord { record: rows.record(all)?, skipped, remarks, are_increments })
+    let record = rows.record(all)?;
+    let steps = record.segments.iter().flat_map(|s| s.times().windows(2)).map(|pair| pair[1] - pair[0]);
+    let read_as = ReadAs { axes: reading.axes, ..rows.table.read_as(steps.collect()) };
+    Ok(FoundRecord { record, skipped, remarks, are_increments, read_as })
 }

@@ -1,5 +1,7 @@
 //! Which column, and with which sign, is the rate about each axis.
 
+use core::fmt;
+
 /// A permutation of three columns with signs: `x,-y,z` reverses the second.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SignedAxes {
@@ -7,6 +9,16 @@ pub struct SignedAxes {
     columns: [usize; 3],
     /// And its sign.
     signs: [f64; 3],
+}
+
+impl fmt::Display for SignedAxes {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let named = |k: usize| {
+            let sign = if self.signs[k] < 0.0 { "-" } else { "" };
+            format!("{sign}{}", ["x", "y", "z"][self.columns[k]])
+        };
+        f.write_str(&[0, 1, 2].map(named).join(", "))
+    }
 }
 
 impl SignedAxes {

@@ -5,6 +5,7 @@ use polhode::units::{RateUnit, TimeUnit};
 
 use super::lines::Line;
 use super::name::Name;
+use crate::read_as::NamedBy;
 
 /// Reads the times of one text.
 pub(crate) struct Clock {
@@ -52,6 +53,17 @@ impl Clock {
             Kind::Dates(first) => cell.parse::<Date>().ok()?.seconds_since(first).ok()?,
         };
         time.is_finite().then_some(time)
+    }
+
+    /// What the times are where they are no numbers of a unit, once one was read.
+    pub(crate) fn words(&self) -> Option<(String, NamedBy)> {
+        match self.kind.as_ref()? {
+            Kind::Numbers(_) => None,
+            Kind::Counts(unit, _) if self.unit == Some(*unit) => None,
+            Kind::Counts(unit, _) => Some((format!("{unit} since 1970"), NamedBy::Values)),
+            Kind::Stamps(_) => Some(("s and ns".into(), NamedBy::Header)),
+            Kind::Dates(_) => Some(("dates".into(), NamedBy::Values)),
+        }
     }
 
     fn kind_of(&self, cell: &str, has_nanoseconds: bool) -> Option<Kind> {

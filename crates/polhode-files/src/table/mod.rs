@@ -31,6 +31,7 @@ pub(crate) use source::Source;
 pub(crate) use spellings::{Quantity, RATE_ENDINGS};
 
 use crate::error::{Rule, TableError};
+use crate::read_as::{NamedBy, ReadAs, sample_rate};
 
 /// How a table is read, where its header leaves it open.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -113,6 +114,8 @@ pub(crate) struct Table<'t> {
     delimiter: Delimiter,
     /// The unit of the times, where something names one.
     pub(crate) time_unit: Option<TimeUnit>,
+    /// What named the units of times and rates.
+    named_by: [NamedBy; 2],
     /// Whether the columns of the rates are angles by their unit.
     pub(crate) are_increments: bool,
     clock: Clock,
@@ -151,6 +154,7 @@ impl<'t> Table<'t> {
             preamble,
             delimiter: looked.delimiter,
             time_unit: None,
+            named_by: [NamedBy::Nothing; 2],
             are_increments: false,
             clock: Clock::new(None),
             line: Line::default(),
@@ -159,7 +163,7 @@ impl<'t> Table<'t> {
             width: 0,
         };
         let below = table.units_below()?;
-        table.time_unit = table.resolve_time(reading, below)?;
+        (table.time_unit, table.named_by[0]) = table.resolve_time(reading, below)?;
         table.clock = Clock::new(table.time_unit);
         table.resolve_rates(reading)?;
         Ok(table)
@@ -346,9 +350,10 @@ impl<'t> Table<'t> {
         &self,
         reading: &ReadOptions,
         below: Option<TimeUnit>,
-    ) -> Result<Option<TimeUnit>, TableError> {
+    ) -> Result<(Option<TimeUnit>, NamedBy), TableError> {
         let counted = reading.sample_rate.map(|rate| TimeUnit::Multiple(1.0 / rate));
-        let Some(place) = self.header.time else { return Ok(counted) };
+        let by = |unit: Option<TimeUnit>, by| unit.map_or(NamedBy::Nothing, |_| by);
+        let Some(place) = self.header.time else { return Ok((counted, by(counted, NamedBy::Setting))) };
         let name = &self.header.names[place];
         let refused = |rule| self.refused_column(place, rule);
         let stated = match name.time_unit() {
@@ -368,17 +373,28 @@ impl<'t> Table<'t> {
             }
             _ => {}
         }
-        let told = || self.header.time_unit.or_else(|| self.preamble.time_unit(name));
-        let unit = stated.or(reading.time_unit).or(counted).or_else(told);
+        let set = reading.time_unit.or(counted);
+        let told = self.header.time_unit.or_else(|| self.preamble.time_unit(name));
+        let unit = stated.or(set).or(told);
         if unit.is_none() && name.is_counter() {
             return Err(refused(Rule::Time));
         }
-        Ok(unit)
+        let of_others = by(set, NamedBy::Setting).or(by(told, NamedBy::Layout));
+        Ok((unit, by(stated, NamedBy::Header).or(of_others)))
     }
 
     /// The units of the angular velocity are known, and do not contradict a setting.
     fn resolve_rates(&mut self, reading: &ReadOptions) -> Result<(), TableError> {
         let implied = self.header.rate_unit.or(self.preamble.rate_unit());
+        self.named_by[1] = match (reading.rate_unit, implied) {
+            (Some(_), _) => NamedBy::Setting,
+            (None, Some(_)) => NamedBy::Layout,
+            (None, None) => NamedBy::Nothing,
+        };
+        let rates = self.header.bodies.first().and_then(|body| body.rates.as_ref());
+        if rates.is_some_and(|rates| rates.units.first().is_some_and(Option::is_some)) {
+            self.named_by[1] = NamedBy::Header;
+        }
         let stated = self.header.bodies.iter().filter_map(|body| body.rates.as_ref());
         for (place, text) in stated.flat_map(|rates| rates.places.iter().zip(&rates.units)) {
             let Some(text) = text else { continue };
@@ -393,6 +409,24 @@ impl<'t> Table<'t> {
         }
         self.header.rate_unit = reading.rate_unit.or(implied);
         Ok(())
+    }
+
+    /// In which units it was read; `steps` are the times between samples that were kept, s.
+    pub(crate) fn read_as(&self, steps: Vec<f64>) -> ReadAs {
+        let [of_times, of_rates] = self.named_by;
+        let has_rates = self.header.bodies.first().is_some_and(|body| body.rates.is_some());
+        let unit = self.rate_units(0)[0].unwrap_or_default();
+        ReadAs {
+            file: self.name().into(),
+            rates: has_rates.then_some((unit, of_rates)),
+            times: self.clock.words().unwrap_or_else(|| {
+                let unit = self.time_unit.unwrap_or(TimeUnit::Seconds);
+                let steps = if matches!(unit, TimeUnit::Multiple(_)) { "steps of " } else { "" };
+                (format!("{steps}{unit}"), of_times)
+            }),
+            sample_rate: sample_rate(steps),
+            axes: None,
+        }
     }
 
     /// The unit of each rate of a body, where something names one.

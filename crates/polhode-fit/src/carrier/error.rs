@@ -27,7 +27,10 @@ pub enum CarrierError {
         error: Box<FitError>,
     },
     /// The body turns by so much between samples that a record has no weak equations.
-    #[error("the samples of the record of {attached} are too far apart for a joint fit: record faster")]
+    #[error(
+        "the samples of the record of {attached} are too far apart for a joint fit: record so fast that the body turns by less than a tenth of a turn \
+         from one to the next"
+    )]
     Sparse {
         /// What tumbled.
         attached: Attached,

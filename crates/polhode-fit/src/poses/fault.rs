@@ -5,6 +5,8 @@ use core::f64::consts::TAU;
 use polhode::num::Shown;
 use thiserror::Error;
 
+use crate::thresholds::poses::{HALF_TURN, STILL};
+
 /// Why a fit to attitudes is refused.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -12,9 +14,9 @@ pub enum PoseFault {
     /// Nearly half a turn, or more, from one attitude to the next.
     #[error(
         "from sample {} of {source_name} to the next the attitude turns by {turn:.3} rad, or the other way round by {:.3} rad: beyond pi = \
-         3.14 no motion can be told from its samples, and these would be rates of {:.3e} and {:.3e} rad/s; record faster, or leave out \
-         the sample if it is a bad one",
-        sample, TAU - turn, turn / step, (TAU - turn) / step
+         3.14 no motion can be told from its samples, and these would be rates of {:.3e} and {:.3e} rad/s; record {:.3e} attitudes a \
+         second or more, which tells the two apart, or leave out the sample if it is a bad one",
+        sample, TAU - turn, turn / step, (TAU - turn) / step, (TAU - turn) / step / HALF_TURN
     )]
     HalfTurn {
         /// Where they come from.
@@ -28,7 +30,7 @@ pub enum PoseFault {
     },
     /// The body does not turn.
     #[error(
-        "the attitudes change by {turn:.2e} rad in all, and their noise is {noise:.2e} rad: the body does not turn; spin it"
+        "the attitudes change by {turn:.2e} rad in all, and their noise is {noise:.2e} rad: the body does not turn; let it turn by more than {:.2e} rad", STILL * *noise
     )]
     NoTurn {
         /// Root mean square of the turn of an attitude from the first, rad.
@@ -40,7 +42,7 @@ pub enum PoseFault {
     #[error(
         "no free motion follows the attitudes, nor one under drag, a constant torque or small torques at random: the nearest one misses them by {residual:.2e} rad (root mean square of a component){}; torques \
          act, or a frame or a sequence of angles is read wrongly, or the body turns by more than half a turn between samples ({turn:.2} rad \
-         as read)",
+         as read); throw the body, cut out of the record what is free, or record faster",
         noise.map_or(String::new(), |noise| format!(", where their noise is {noise:.2e} rad"))
     )]
     NotFree {

@@ -6,6 +6,7 @@ use polhode::inertia::{Inertia, InertiaShape};
 use crate::error::FitError;
 use crate::physical::coordinates::{Coordinates, Form, eigen, entries_of_coordinates, pair, tensor};
 use crate::physical::failure::SolverFailure;
+use crate::solve::joint::factor;
 
 /// A tensor of trace 1.
 pub(crate) struct Answer {
@@ -35,6 +36,12 @@ pub(crate) fn ratios(factor: &Form, v: &[Vector3<f64>; 3], moments: &Vector3<f64
         let slope = (pair(&v[k], &v[k]) - pair(&v[2], &v[2]) * (moments[k] / moments[2])) / moments[2];
         (moments[k] / moments[2], (factor.transpose() * slope).norm())
     })
+}
+
+/// The same of any tensor, also one that no body has; `covariance` is that of its coordinates.
+pub(crate) fn ratios_of(x: &Coordinates, covariance: &Form) -> [(f64, f64); 2] {
+    let (moments, axes) = eigen(tensor(x));
+    ratios(&factor(covariance), &[0, 1, 2].map(|k| axes.column(k).into_owned()), &moments)
 }
 
 /// The covariance of the entries by a factor of that of the coordinates, so that no variance is negative.

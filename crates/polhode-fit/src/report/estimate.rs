@@ -27,6 +27,33 @@ pub enum Method {
     Smoother,
 }
 
+impl Method {
+    /// In words.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::WeakForm => "weak form, generalised least squares on denoised samples",
+            Self::ExactMotion => "maximum likelihood on the exact motion of the free body",
+            Self::ExactMotionWithWheels => "maximum likelihood on the exact motion of the body with wheels",
+            Self::Smoother => {
+                "maximum likelihood by a Kalman filter and smoother about the motion under torques"
+            }
+        }
+    }
+}
+
+impl Estimate {
+    /// Correlations of the entries xx, yy, zz, xy, xz, yz of the shape; those of one without a deviation are zero.
+    #[must_use]
+    pub fn correlation(&self) -> SMatrix<f64, 6, 6> {
+        let covariance = &self.covariance;
+        SMatrix::from_fn(|i, k| {
+            let size = (covariance[(i, i)] * covariance[(k, k)]).sqrt();
+            if size > 0.0 { covariance[(i, k)] / size } else { 0.0 }
+        })
+    }
+}
+
 /// Whitened residuals of one segment: standard normal where model and noise are right.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
@@ -93,6 +120,8 @@ pub struct Estimate {
     pub inertia_covariance: Option<SMatrix<f64, 6, 6>>,
     /// Step of each component of the readings, rad/s, as found or given; 0 where there is none.
     pub quanta: [f64; 3],
+    /// Root mean square of |ω|, rad/s.
+    pub rms_rate: f64,
     /// Noise of one component of the rates, rad/s; 0 where attitudes alone were fitted.
     pub noise_sigma: f64,
     /// Mean square of the residuals over the noise; the covariance is multiplied by it, before law and limits are

@@ -28,7 +28,7 @@ use crate::report::estimate::{Estimate, Method, Residuals};
 use crate::report::identifiability::Identifiability;
 use crate::report::mirror::{mirror_sigmas, mirrored};
 use crate::report::model::models;
-use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary};
+use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, WithoutSegment};
 use crate::report::scale::{by_prior, scale_of};
 use crate::report::torque_free::{InvariantTrend, Whiteness};
 use crate::report::warnings::{Doubts, of_likelihood};
@@ -138,6 +138,7 @@ pub(crate) fn report(
         inertia,
         inertia_covariance,
         quanta: [0.0; 3],
+        rms_rate: free.read.unit,
         noise_sigma: if free.read.has_rates { information.levels.rate * free.read.unit } else { 0.0 },
         chi2_per_dof: excess + pull * pull / f64::max(count, 1.0),
         pull,
@@ -336,16 +337,20 @@ fn residuals(free: &Free, levels: Levels) -> Result<Vec<Residuals>, FitError> {
 fn summaries(free: &Free, information: &Information) -> Vec<SegmentSummary> {
     let total = information.tensor;
     let inverse = total.cholesky().map(|c| c.inverse());
+    let all = information.all.of_tensor().and_then(|all| Some(all.cholesky()?.inverse()));
     let each = free.read.used.iter().enumerate().map(|(k, &(segment, _))| {
-        let own = Reduced::new(&information.sums[k..=k], None, 0.0).and_then(|own| {
-            let gradient = own.gradient_of_tensor()?;
-            Some((own.of_tensor()?, gradient))
-        });
-        let weight = own.zip(inverse).map_or(0.0, |((own, _), inverse)| (inverse * own).trace() / 5.0);
-        let shift = own.and_then(|(own, gradient)| {
-            let step = (total - own).cholesky()?.solve(&gradient);
-            Some(step.dot(&(total * step)).sqrt())
-        });
+        let own = Reduced::new(&information.sums[k..=k], None, 0.0).and_then(|own| own.of_tensor());
+        let weight = own.zip(inverse).map_or(0.0, |(own, inverse)| (inverse * own).trace() / 5.0);
+        let others = || {
+            let sums = &information.sums;
+            let rest: Vec<Sums> = sums[..k].iter().chain(&sums[k + 1..]).cloned().collect();
+            let rest = Reduced::new(&rest, None, 0.0).filter(|_| sums.len() > 1)?;
+            let own = rest.of_tensor()?.cholesky()?;
+            let step = own.solve(&rest.gradient_of_tensor()?);
+            let covariance = own.inverse() + (inverse? - all?);
+            let x = free.followed.model.x + information.moved + step;
+            Some(WithoutSegment::new(&x, &covariance, step.dot(&(total * step)).sqrt()))
+        };
         let track: &Track = &free.followed.tracks[k];
         SegmentSummary {
             segment,
@@ -353,7 +358,7 @@ fn summaries(free: &Free, information: &Information) -> Vec<SegmentSummary> {
             noise_sigma: information.levels.rate * free.read.unit,
             torque_noise: 0.0,
             weight,
-            shift: shift.unwrap_or(0.0),
+            without: others(),
         }
     });
     let mut each: Vec<SegmentSummary> = each.collect();

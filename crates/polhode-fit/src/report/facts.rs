@@ -131,6 +131,7 @@ impl Facts<'_> {
             inertia,
             inertia_covariance,
             quanta: self.settings.quantum.map_or_else(|| self.record.quanta().into(), |quantum| [quantum; 3]),
+            rms_rate: self.rms,
             noise_sigma: self.variance.sqrt() * self.rms,
             chi2_per_dof: self.misfit + pull * pull * self.misfit.max(1.0) / weak.dof().max(1) as f64,
             pull,

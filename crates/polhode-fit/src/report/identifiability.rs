@@ -1,6 +1,6 @@
 //! Which combinations of the five numbers a record determines, and which it does not.
 
-use crate::thresholds::identifiability::{PRINCIPAL, PURE, VAGUE};
+use crate::thresholds::identifiability::{LONGER, PRINCIPAL, PURE, VAGUE};
 use core::fmt;
 
 use nalgebra::{Matrix3, Vector3};
@@ -121,6 +121,32 @@ impl Identifiability {
     /// Whether everything but the scale is determined.
     pub fn complete(&self) -> bool {
         self.rank == 5
+    }
+
+    /// Which record would tell more, in words; empty where this one determines everything.
+    pub fn next_record(&self) -> String {
+        let weakest = self.deviations.iter().copied().fold(0.0, f64::max);
+        let times = (weakest / VAGUE) * (weakest / VAGUE);
+        let what = match self.null_directions.first() {
+            None => return String::new(),
+            Some(Undetermined::Everything) => {
+                "spin the body faster, with a wobble that stands out of the noise".into()
+            }
+            Some(Undetermined::TransverseRatio | Undetermined::SpinRatio | Undetermined::TransverseAxes) => {
+                "record a throw that wobbles: start with rotation about at least two of the principal axes"
+                    .into()
+            }
+            Some(Undetermined::Ratios) => {
+                "record a throw that turns about two or three principal axes at once, which compares them"
+                    .into()
+            }
+            Some(Undetermined::Ratio { .. } | Undetermined::Axes { .. }) if times <= LONGER => format!(
+                "start with rotation about all three axes, or record {} times as long",
+                libm::ceil(times).max(2.0)
+            ),
+            Some(_) => "start with rotation about all three axes, with a larger wobble".to_string(),
+        };
+        format!("{what}; or give a tensor known beforehand, as from CAD, which supplies the rest")
     }
 
     /// Both lists in one sentence.

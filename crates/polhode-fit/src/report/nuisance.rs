@@ -101,6 +101,18 @@ pub struct SegmentSummary {
     pub torque_noise: f64,
     /// Its share of the information about the tensor: the shares of all segments sum to 1.
     pub weight: f64,
-    /// Distance, in standard deviations of the estimate, by which the tensor moves where the segment is left out.
+    /// The answer by the other segments; `None` where they do not determine the tensor.
+    pub without: Option<WithoutSegment>,
+}
+
+/// The answer by all segments but one, of the record alone: before a prior, the physical law and limits, and with wheels by the weak form.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WithoutSegment {
+    /// I₁/I₃ and I₂/I₃.
+    pub ratios: [f64; 2],
+    /// Their standard deviations.
+    pub sigma_ratios: [f64; 2],
+    /// Distance from the tensor by all segments, in standard deviations of that.
     pub shift: f64,
 }

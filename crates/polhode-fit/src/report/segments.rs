@@ -2,19 +2,41 @@
 
 use polhode::record::Record;
 
-use crate::physical::coordinates::Form;
-use crate::report::nuisance::SegmentSummary;
+use crate::physical::coordinates::{Coordinates, Form};
+use crate::report::answer::ratios_of;
+use crate::report::nuisance::{SegmentSummary, WithoutSegment};
 use crate::signal::covariance::Shape;
 use crate::solve::stacked::Stacked;
 use crate::solve::weak_estimate::{Part, WeakEstimate};
 
+/// A segment, and what the others say.
+pub(crate) struct Summary {
+    own: SegmentSummary,
+    others: Option<Others>,
+}
+
+/// The tensor by all segments but one.
+struct Others {
+    x: Coordinates,
+    /// Covariance of its coordinates, per variance of the noise.
+    covariance: Form,
+    /// Distance from that by all, in standard deviations of that.
+    shift: f64,
+}
+
+impl Summary {
+    /// With deviations for noise of the variance `enlarged`, and what else is `added` to the covariance of the tensor.
+    pub(crate) fn complete(self, enlarged: f64, added: &Form) -> SegmentSummary {
+        let Summary { own, others } = self;
+        let without = others.map(|others| {
+            WithoutSegment::new(&others.x, &(others.covariance * enlarged + added), others.shift)
+        });
+        SegmentSummary { without, ..own }
+    }
+}
+
 /// One summary for each stretch of a weak estimate; `variance` is that of the noise in units of the rate `rms`.
-pub(crate) fn summaries(
-    weak: &WeakEstimate,
-    record: &Record,
-    variance: f64,
-    rms: f64,
-) -> Vec<SegmentSummary> {
+pub(crate) fn summaries(weak: &WeakEstimate, record: &Record, variance: f64, rms: f64) -> Vec<Summary> {
     let Some(stacked) = &weak.stacked else { return Vec::new() };
     let total = stacked.information();
     let stack = |parts: &[&Part]| {
@@ -28,26 +50,38 @@ pub(crate) fn summaries(
         // what the others leave of the information that all have together
         let kept = others.as_ref().map_or(Form::zeros(), Stacked::information);
         let weight = total.cholesky().map_or(0.0, |total| 1.0 - total.solve(&kept).trace() / 5.0);
-        let without = others.and_then(|others| others.minimiser());
-        let shift = without.map_or(0.0, |without| (stacked.root * (without.x - weak.x())).norm());
+        let without = || {
+            let x = others.as_ref()?.minimiser()?.x;
+            let shift = (stacked.root * (x - weak.x())).norm() / variance.sqrt();
+            Some(Others { x, covariance: kept.cholesky()?.inverse(), shift })
+        };
         let levels = part.levels;
         let share = match levels.shape {
             Shape::Moments => 1.0,
             Shape::Alike => 1.0 / 9.0,
         };
-        SegmentSummary {
+        let own = SegmentSummary {
             segment: part.stretch,
             samples: record.segments[part.stretch].times().len(),
             noise_sigma: (levels.white * variance).sqrt() * rms,
             torque_noise: levels.torque * share * variance * rms * rms * rms,
             weight,
-            shift: shift / variance.sqrt(),
-        }
+            without: None,
+        };
+        Summary { own, others: without() }
     });
-    let mut summaries: Vec<SegmentSummary> = each.collect();
-    let sum: f64 = summaries.iter().map(|s| s.weight).sum();
+    let mut summaries: Vec<Summary> = each.collect();
+    let sum: f64 = summaries.iter().map(|s| s.own.weight).sum();
     if sum > 0.0 {
-        summaries.iter_mut().for_each(|s| s.weight /= sum);
+        summaries.iter_mut().for_each(|s| s.own.weight /= sum);
     }
     summaries
+}
+
+impl WithoutSegment {
+    /// Of the tensor by the other segments, and the covariance of its coordinates.
+    pub(crate) fn new(x: &Coordinates, covariance: &Form, shift: f64) -> Self {
+        let ratios = ratios_of(x, covariance);
+        WithoutSegment { ratios: ratios.map(|r| r.0), sigma_ratios: ratios.map(|r| r.1), shift }
+    }
 }

@@ -17,7 +17,7 @@ use crate::report::deviations::{Deviations, deviations};
 use crate::report::estimate::{Estimate, Method, Residuals};
 use crate::report::exact::{Told, absolute, identify};
 use crate::report::model::models;
-use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary};
+use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, WithoutSegment};
 use crate::report::torque_free::Whiteness;
 use crate::report::warnings::of_smoothed;
 use crate::settings::Settings;
@@ -127,6 +127,7 @@ pub(crate) fn report(
         inertia,
         inertia_covariance,
         quanta: [0.0; 3],
+        rms_rate: read.unit,
         noise_sigma: 0.0,
         chi2_per_dof: misfit + answer.pull * answer.pull / found.dof.max(1.0),
         pull: answer.pull,
@@ -148,7 +149,7 @@ pub(crate) fn report(
         nuisances: Vec::new(),
         systematic: Vec::new(),
         prior: agreed,
-        per_segment: summaries(chosen, read, &information, density),
+        per_segment: summaries(chosen, read, &information, (excess, of_choice), density),
         unexplained: None,
         attitudes: Some(attitudes),
         mirror: None,
@@ -194,18 +195,28 @@ fn torque(chosen: &Chosen, excess: f64, unit: f64, is_chosen: bool) -> FittedTor
 }
 
 /// Each segment and its share of the information.
-fn summaries(chosen: &Chosen, read: &Read, total: &Form, density: f64) -> Vec<SegmentSummary> {
+fn summaries(
+    chosen: &Chosen,
+    read: &Read,
+    total: &Form,
+    (excess, of_choice): (f64, Form),
+    density: f64,
+) -> Vec<SegmentSummary> {
     let inverse = total.cholesky().map(|c| c.inverse());
     let found = &chosen.found;
+    let tracks = read.used.iter().zip(&found.tracks);
     let each =
-        read.used.iter().zip(&found.tracks).zip(&found.of_each).map(|((&(segment, _), track), own)| {
+        tracks.zip(found.of_each.iter().zip(&found.without)).map(|((&(segment, _), track), (own, rest))| {
             SegmentSummary {
                 segment,
                 samples: track.used.iter().filter(|used| **used).count(),
                 noise_sigma: 0.0,
                 torque_noise: density,
                 weight: inverse.map_or(0.0, |inverse| (inverse * own).trace() / 5.0),
-                shift: 0.0,
+                without: rest.map(|(step, covariance)| {
+                    let shift = step.dot(&(total * step)).sqrt();
+                    WithoutSegment::new(&(found.at.x + step), &(covariance * excess + of_choice), shift)
+                }),
             }
         });
     let mut each: Vec<SegmentSummary> = each.collect();

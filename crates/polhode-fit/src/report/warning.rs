@@ -244,7 +244,7 @@ impl fmt::Display for Warning {
                 if let Some(share) = unexplained {
                     write!(f, ": free motion leaves {} of the squared derivative of the rates unexplained", per_cent(*share))?;
                 }
-                f.write_str("; an error of the sensor may look like them, see the systematic changes")
+                f.write_str("; errors of the measurement may look like them")
             }
             Self::ShortSegments { short, segments } => {
                 write!(f, "{short} of {segments} segments are too short for the test functions")

@@ -1,6 +1,6 @@
 //! From a first path to the likeliest one, with tensor, torque and noise.
 
-use nalgebra::{DMatrix, SMatrix, SVector, Vector3};
+use nalgebra::{DMatrix, DVector, SMatrix, SVector, Vector3};
 use polhode::rotation::{Quat, Vec3};
 
 use crate::columns::column::{Column, Unknowns};
@@ -43,6 +43,8 @@ pub(crate) struct Found {
     pub(crate) information: DMatrix<f64>,
     /// The same on the tensor by each stretch alone, where it tells all of it.
     pub(crate) of_each: Vec<Form>,
+    /// By all stretches but each one: the step of the tensor from here, and its covariance.
+    pub(crate) without: Vec<Option<(Coordinates, Form)>>,
     /// The innovations of each track over their deviations, by sample.
     pub(crate) whitened: Vec<Vec<(usize, Vector3<f64>)>>,
     /// Log-likelihood, the unknowns at their best.
@@ -191,17 +193,14 @@ impl Search<'_> {
         let (mut squares, mut determinant, mut count) = (0.0, 0.0, 0.0);
         let (mut of_starts, mut own) = (0.0, Vec::with_capacity(sums.len()));
         for one in &sums {
-            let cholesky = one.matrix.fixed_view::<6, 6>(0, 0).into_owned().cholesky()?;
-            let inverse = cholesky.inverse();
-            let mixed = one.matrix.fixed_view::<6, SHARED>(0, 6).into_owned();
-            let start = one.right.fixed_rows::<6>(0).into_owned();
-            information += one.matrix.fixed_view::<SHARED, SHARED>(6, 6) - mixed.tr_mul(&(inverse * mixed));
-            right += one.right.fixed_rows::<SHARED>(6) - mixed.tr_mul(&(inverse * start));
-            squares += one.squares - start.dot(&(inverse * start));
-            of_starts += 2.0 * cholesky.l().diagonal().map(libm::log).sum();
+            let taken = Taken::new(one)?;
+            information += taken.information;
+            right += taken.right;
+            squares += one.squares - taken.start.dot(&(taken.inverse * taken.start));
+            of_starts += taken.log_determinant;
             determinant += one.log_determinant;
             count += one.count;
-            own.push((inverse, start, mixed));
+            own.push(taken);
         }
         // coefficients that the model has not
         for k in 5 + self.columns.len()..SHARED {
@@ -218,7 +217,7 @@ impl Search<'_> {
         let variance = self.noise.attitude.map_or((squares / dof).max(LEAST), |sigma| sigma * sigma);
         let of_unknowns = of_starts + 2.0 * cholesky.l().diagonal().map(libm::log).sum();
         let fit = squares / variance + determinant;
-        let starts = own.iter().map(|(inverse, start, mixed)| inverse * (start - mixed * step)).collect();
+        let starts = own.iter().map(|of| of.inverse * (of.start - of.mixed * step)).collect();
         Some(Solved {
             step,
             starts,
@@ -328,7 +327,7 @@ impl Search<'_> {
         let links = self.links(&law)?;
         let solved = self.solve(&links, self.level)?;
         let deviation = solved.variance.sqrt();
-        let (mut whitened, mut of_each) = (Vec::new(), Vec::new());
+        let (mut whitened, mut of_each, mut taken) = (Vec::new(), Vec::new(), Vec::new());
         for (((track, path), links), start) in
             self.tracks.iter().zip(&self.paths).zip(&links).zip(&solved.starts)
         {
@@ -340,8 +339,10 @@ impl Search<'_> {
             })?;
             whitened.push(own);
             of_each.push(of_tensor(&sums, self.columns.len()).unwrap_or_else(Form::zeros) / solved.variance);
+            taken.push(Taken::new(&sums)?);
         }
         let size = 5 + self.columns.len();
+        let without = (0..taken.len()).map(|k| by_others(&taken, k, size, solved.variance)).collect();
         let changes = links.iter().zip(&self.paths).map(|(links, path)| {
             let each = links.iter().zip(path.windows(2));
             each.map(|(link, path)| [path[1].rate - path[0].rate, -link.left_of_rate()]).collect()
@@ -356,6 +357,7 @@ impl Search<'_> {
             variance: solved.variance,
             information: DMatrix::from_fn(size, size, |i, k| solved.information[(i, k)]),
             of_each,
+            without,
             whitened,
             likelihood: -0.5 * solved.plain,
             dof: solved.dof,
@@ -368,6 +370,48 @@ impl Search<'_> {
 /// A start and what is shared.
 fn together(start: &SVector<f64, 6>, shared: &SVector<f64, SHARED>) -> SVector<f64, ALL> {
     SVector::from_iterator(start.iter().chain(shared.iter()).copied())
+}
+
+/// The equations of one stretch on what all share, its start taken out.
+struct Taken {
+    information: SMatrix<f64, SHARED, SHARED>,
+    right: SVector<f64, SHARED>,
+    /// Of the start: inverse of the information on it, its right-hand side, and its part in what is shared.
+    inverse: SMatrix<f64, 6, 6>,
+    start: SVector<f64, 6>,
+    mixed: SMatrix<f64, 6, SHARED>,
+    /// Logarithm of the determinant of the information on the start.
+    log_determinant: f64,
+}
+
+impl Taken {
+    /// `None` where the start is not determined.
+    fn new(of: &Sums) -> Option<Taken> {
+        let cholesky = of.matrix.fixed_view::<6, 6>(0, 0).into_owned().cholesky()?;
+        let inverse = cholesky.inverse();
+        let mixed = of.matrix.fixed_view::<6, SHARED>(0, 6).into_owned();
+        let start = of.right.fixed_rows::<6>(0).into_owned();
+        Some(Taken {
+            information: of.matrix.fixed_view::<SHARED, SHARED>(6, 6) - mixed.tr_mul(&(inverse * mixed)),
+            right: of.right.fixed_rows::<SHARED>(6) - mixed.tr_mul(&(inverse * start)),
+            inverse,
+            start,
+            mixed,
+            log_determinant: 2.0 * cholesky.l().diagonal().map(libm::log).sum(),
+        })
+    }
+}
+
+/// Step and covariance of the tensor by all stretches but the one with number `k`; `size` unknowns are shared.
+fn by_others(taken: &[Taken], k: usize, size: usize, variance: f64) -> Option<(Coordinates, Form)> {
+    let (mut information, mut right) = (DMatrix::zeros(size, size), DVector::zeros(size));
+    for other in taken.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, other)| other) {
+        information += other.information.view((0, 0), (size, size));
+        right += other.right.rows(0, size);
+    }
+    let inverse = information.cholesky()?.inverse();
+    let step = (&inverse * right).fixed_rows::<5>(0).into_owned();
+    Some((step, inverse.fixed_view::<5, 5>(0, 0).into_owned() * variance))
 }
 
 /// The information on the tensor by one stretch alone, with `coefficients` of a torque.

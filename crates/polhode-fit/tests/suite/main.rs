@@ -14,6 +14,7 @@ mod next_step;
 mod poses;
 mod poses_driven;
 mod prior;
+mod segments;
 mod simulate;
 mod sparse;
 mod told;

@@ -330,7 +330,7 @@ fn several_segments_share_the_tensor_and_the_noise_may_be_given() {
     assert_eq!((estimate.segments, estimate.per_segment.len()), (3, 3));
     assert!((estimate.per_segment.iter().map(|s| s.weight).sum::<f64>() - 1.0).abs() < 1e-12);
     assert!(
-        estimate.per_segment.iter().all(|s| s.shift > 0.0 && s.shift < 20.0),
+        estimate.per_segment.iter().all(|s| s.without.is_some_and(|w| w.shift > 0.0 && w.shift < 20.0)),
         "{:?}",
         estimate.per_segment
     );

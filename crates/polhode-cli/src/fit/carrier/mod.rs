@@ -13,6 +13,7 @@ use polhode_pages::document::Form;
 use polhode_pages::output::Output;
 use polhode_pages::table::Format;
 
+use super::as_read::AsRead;
 use super::flights::Spans;
 use super::refusal;
 use super::report::unused;
@@ -37,25 +38,25 @@ pub(super) fn run(
     wanted: Wanted,
 ) -> Result<(), Error> {
     let Wanted { output, format, page } = wanted;
-    let found = records(arguments, data, reading, wheel, settings)?
-        .and_then(|records| fit_carrier(&records, settings));
+    let (found, as_read) = records(arguments, data, reading, wheel, settings)?;
+    let found = found.and_then(|records| fit_carrier(&records, settings));
     let estimate = match found {
         Ok(estimate) => estimate,
         Err(error) => {
             let (names, reason) = (named(&about(arguments, data, &error)), reason(&error));
             if let Some((file, form)) = page {
-                file.write_whole(&page::refused(&reason, &names, form))?;
+                file.write_whole(&page::refused(&reason, (&names, &as_read), form))?;
             }
             let message = format!("{names}: {reason}");
             return Err(if is_failure(&error) { Error::Failed(message) } else { Error::Input(message) });
         }
     };
     estimate.all_warnings().iter().for_each(|warning| warn(warning));
-    output.write_whole(&report::report(&estimate, format))?;
+    output.write_whole(&report::report(&estimate, &as_read, format))?;
     match page {
         Some((file, form)) => {
             let names = named(&arguments.files(data).concat());
-            file.write_whole(&page::estimated(&estimate, &names, form))
+            file.write_whole(&page::estimated(&estimate, (&names, &as_read), form))
         }
         None => Ok(()),
     }
@@ -68,10 +69,11 @@ fn records(
     reading: &RecordArguments,
     (momentum, finds_wheel): (Option<Vector3<f64>>, bool),
     settings: &Settings,
-) -> Result<Result<CarrierRecords, CarrierError>, Error> {
+) -> Result<(Result<CarrierRecords, CarrierError>, AsRead), Error> {
     let files = arguments.files(data);
     let given = files.map(|files| !files.is_empty());
-    let [mut alone, mut proof, mut object, mut both] = reading.records(files, momentum)?;
+    let ([mut alone, mut proof, mut object, mut both], read) = reading.records(files, momentum)?;
+    let as_read = AsRead(read);
     let each = [
         (&mut alone, Attached::Nothing),
         (&mut proof, Attached::Proof),
@@ -88,7 +90,9 @@ fn records(
                 Ok(found) => {
                     found.remark().into_iter().for_each(|remark| warn(&format!("{attached}: {remark}")));
                 }
-                Err(error) => return Ok(Err(CarrierError::Record { attached, error: Box::new(error) })),
+                Err(error) => {
+                    return Ok((Err(CarrierError::Record { attached, error: Box::new(error) }), as_read));
+                }
             }
         }
     }
@@ -106,7 +110,7 @@ fn records(
         records =
             records.with_object_at(mass, place, carrier).map_err(|error| Error::Input(error.to_string()))?;
     }
-    Ok(Ok(if finds_wheel { records.with_unknown_wheel() } else { records }))
+    Ok((Ok(if finds_wheel { records.with_unknown_wheel() } else { records }), as_read))
 }
 
 fn named(files: &[PathBuf]) -> String {

@@ -4,11 +4,12 @@ use polhode_fit::CarrierEstimate;
 use polhode_pages::document::{Block, Form, Tone};
 
 use super::report::{agreement, bodies, sizes};
-use crate::fit::page::{against, capital, numbers};
+use crate::fit::as_read::AsRead;
+use crate::fit::page::{against, capital, minus, numbers};
 use crate::fit::report::{ENTRIES, SURE, scaled};
 
 /// The page of an answer from the files `names`.
-pub(super) fn estimated(e: &CarrierEstimate, names: &str, form: Form) -> String {
+pub(super) fn estimated(e: &CarrierEstimate, (names, as_read): (&str, &AsRead), form: Form) -> String {
     let warnings = e.all_warnings();
     let mut parts = vec![verdict(e, warnings.len())];
     parts.extend(bodies(e).into_iter().flat_map(|(_, words, body)| {
@@ -36,9 +37,10 @@ pub(super) fn estimated(e: &CarrierEstimate, names: &str, form: Form) -> String 
         facts.insert(0, format!("wheel inertia: {} kg m² (95 %)", shown(wheel.inertia, wheel.sigma)));
     }
     facts.push(agreement(e));
+    facts.extend(as_read.sentences());
     parts.extend([Block::Heading("Size and agreement".into()), Block::List(facts)]);
     if !warnings.is_empty() {
-        parts.extend([Block::Heading("What speaks against it".into()), Block::List(warnings)]);
+        parts.extend([Block::Heading("Warnings".into()), Block::List(warnings)]);
     }
     if !e.nuisances.is_empty() {
         parts.extend([Block::Heading("Sensor, from all records".into()), numbers(&e.nuisances)]);
@@ -53,8 +55,9 @@ pub(super) fn estimated(e: &CarrierEstimate, names: &str, form: Form) -> String 
 }
 
 /// The page of a refusal.
-pub(super) fn refused(reason: &str, names: &str, form: Form) -> String {
-    let parts = [Block::Verdict(Tone::Bad, format!("No inertia tensor: {reason}."))];
+pub(super) fn refused(reason: &str, (names, as_read): (&str, &AsRead), form: Form) -> String {
+    let verdict = Block::Verdict(Tone::Bad, format!("No inertia tensor: {reason}."));
+    let parts = [verdict, Block::List(as_read.sentences())];
     form.write(&format!("No inertia from {names}"), &parts)
 }
 
@@ -68,8 +71,4 @@ fn verdict(e: &CarrierEstimate, warnings: usize) -> Block {
 
 fn shown(value: f64, sigma: f64) -> String {
     minus(&scaled(value, SURE * sigma).replace("+-", "±"))
-}
-
-fn minus(number: &str) -> String {
-    number.replace('-', "\u{2212}")
 }

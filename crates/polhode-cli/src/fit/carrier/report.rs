@@ -5,13 +5,14 @@ use polhode_fit::{CarrierEstimate, MeasuredBody, Nuisance, Size};
 use polhode_pages::table::{Column, Format, Table, row};
 use serde_json::{Map, Value, json};
 
-use crate::fit::report::{ENTRIES, SURE, nuisances, scaled, tensor, with_error};
+use crate::fit::as_read::AsRead;
+use crate::fit::report::{ENTRIES, SURE, nuisances, scaled, tensor, unit_column, with_error, wrapped_lines};
 
-pub(super) fn report(e: &CarrierEstimate, format: Format) -> String {
+pub(super) fn report(e: &CarrierEstimate, as_read: &AsRead, format: Format) -> String {
     match format {
-        Format::Table => text(e),
+        Format::Table => text(e, as_read),
         Format::Csv => rows(e).csv(),
-        Format::Json => format!("{:#}\n", object(e)),
+        Format::Json => format!("{:#}\n", object(e, as_read)),
     }
 }
 
@@ -44,7 +45,7 @@ pub(super) fn agreement(e: &CarrierEstimate) -> String {
     }
 }
 
-fn text(e: &CarrierEstimate) -> String {
+fn text(e: &CarrierEstimate, as_read: &AsRead) -> String {
     let mut lines = Vec::new();
     for (_, words, body) in bodies(e) {
         lines.push(format!("{words}: principal moments (kg m^2, 95 %)"));
@@ -61,10 +62,11 @@ fn text(e: &CarrierEstimate) -> String {
     }
     lines.extend(sizes(e));
     lines.push(agreement(e));
+    lines.extend(wrapped_lines(&as_read.sentences()));
     for (_, words, body) in bodies(e) {
         lines.push(tensor(&format!("{words} (kg m^2, sensor axes)"), &body.tensor));
         let deviations = Matrix3::from_fn(|i, k| body.covariance[(place(i, k), place(i, k))].sqrt());
-        lines.push(tensor("standard deviations", &deviations));
+        lines.push(tensor("standard deviations (kg m^2)", &deviations));
     }
     if !e.nuisances.is_empty() {
         lines.extend([String::new(), "sensor, from all records:".into()]);
@@ -93,28 +95,29 @@ fn rows(e: &CarrierEstimate) -> Table {
         Column::new("quantity", "", "what"),
         Column::new("value", "", "estimate"),
         Column::new("sigma", "", "standard deviation"),
+        unit_column(),
     ];
     let mut table = Table::new("carrier", "Carrier, proof body and object as one fit.", columns);
     for (name, _, body) in bodies(e) {
         for (entry, i, k) in ENTRIES {
             let sigma = body.covariance[(place(i, k), place(i, k))].sqrt();
-            table.push(row![format!("{name}_{entry}"), body.tensor[(i, k)], sigma]);
+            table.push(row![format!("{name}_{entry}"), body.tensor[(i, k)], sigma, "kg m^2"]);
         }
         for k in 0..3 {
             let of = format!("{name}_principal_{}", k + 1);
-            table.push(row![of, body.principal[k], body.sigma_principal[k]]);
+            table.push(row![of, body.principal[k], body.sigma_principal[k], "kg m^2"]);
         }
     }
     if let Some(wheel) = e.wheel {
-        table.push(row!["wheel_inertia", wheel.inertia, wheel.sigma]);
+        table.push(row!["wheel_inertia", wheel.inertia, wheel.sigma, "kg m^2"]);
     }
-    e.nuisances.iter().for_each(|n| table.push(row![n.name, n.value, n.sigma]));
-    table.push(row!["chi2", e.agreement.chi2, (2.0 * e.agreement.dof as f64).sqrt()]);
-    table.push(row!["pull", e.pull, None::<f64>]);
+    e.nuisances.iter().for_each(|n| table.push(row![n.name, n.value, n.sigma, n.unit]));
+    table.push(row!["chi2", e.agreement.chi2, (2.0 * e.agreement.dof as f64).sqrt(), ""]);
+    table.push(row!["pull", e.pull, None::<f64>, "standard deviations"]);
     table
 }
 
-fn object(e: &CarrierEstimate) -> Value {
+fn object(e: &CarrierEstimate, as_read: &AsRead) -> Value {
     let square =
         |m: &Matrix3<f64>| (0..3).map(|i| json!([m[(i, 0)], m[(i, 1)], m[(i, 2)]])).collect::<Value>();
     let mut all: Map<String, Value> = ["carrier", "object", "object_itself", "wheel"]
@@ -149,6 +152,7 @@ fn object(e: &CarrierEstimate) -> Value {
             "shape": square(&of.shape.tensor()),
             "warnings": of.warnings.iter().map(ToString::to_string).collect::<Value>(),
         })).collect::<Value>(),
+        "read_as": as_read.json(),
         "warnings": e.warnings.iter().map(ToString::to_string).collect::<Value>(),
     });
     if let Value::Object(more) = more {

@@ -16,10 +16,24 @@ const DRAWN: usize = 8;
 const SMALL: f64 = 260.0;
 
 /// Measured and fitted rates of each segment, or of those that fit worst.
-pub(super) fn motions(motion: &[FittedMotion], record: &Record) -> Result<Vec<Block>, Error> {
+/// `differenced` says that the rates are those of attitudes, which nobody has measured.
+pub(super) fn motions(
+    motion: &[FittedMotion],
+    record: &Record,
+    differenced: bool,
+) -> Result<Vec<Block>, Error> {
     let mut chosen: Vec<&FittedMotion> = motion.iter().collect();
     worst_first(&mut chosen);
-    let mut parts = vec![Block::Heading("Measured and fitted rates".into())];
+    let heading = if differenced {
+        "Rates of the attitudes and of the fitted motion"
+    } else {
+        "Measured and fitted rates"
+    };
+    let mut parts = vec![Block::Heading(heading.into())];
+    if differenced {
+        let about = "Dots: slopes of parabolas through neighbouring attitudes, a look at the motion only: the fit uses the attitudes.";
+        parts.push(Block::Paragraph(about.into()));
+    }
     if motion.len() > DRAWN {
         parts.push(Block::Paragraph(format!("The {DRAWN} segments of {} that fit worst.", motion.len())));
     }
@@ -157,7 +171,7 @@ fn kept(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Figure {
         Curve::new(name, points).dots()
     };
     let title = "Angular momentum and energy along the record";
-    let mut figure = over_time(title, "over the segment's mean", single, 320.0);
+    let mut figure = over_time(title, "value / mean of the segment", single, 320.0);
     figure.series = vec![curve("|Jω|", &|w| (j * w).norm()), curve("2T", &|w| w.dot(&(j * w)))];
     figure
 }

@@ -7,11 +7,11 @@ use polhode_files::error::Error;
 use polhode_fit::{Estimate, FittedMotion, Nuisance, Record};
 use polhode_pages::document::{Block, Form, Tone};
 
-use super::attitudes::Read;
+use super::as_read::AsRead;
 use super::flights::Spans;
 use super::report::{
-    ENTRIES, Facts, MODELS, SURE, about_models, attitudes, correlation, digits, mirror, models, sensor_lines,
-    sizes, systematic, two_places, unexplained, unused, with_error,
+    ENTRIES, Facts, MODELS, SURE, Segments, Sources, about_models, attitudes, component, digits, four_digits,
+    mirror, models, sensor_lines, sizes, systematic, two_places, unexplained, unused, with_error,
 };
 
 /// The page of an estimate from the files `names`.
@@ -19,18 +19,18 @@ pub(super) fn estimated(
     e: &Estimate,
     record: &Record,
     motion: &[FittedMotion],
-    (spans, read): (&Spans, Option<&Read>),
+    (spans, read, as_read): Sources<'_>,
     names: &str,
     form: Form,
 ) -> Result<String, Error> {
-    let mut parts = answer(e);
+    let mut parts = answer(e, as_read);
     let sentences = attitudes::sentences(e, read);
     if !sentences.is_empty() {
         parts.push(Block::Heading("Attitudes".into()));
         parts.push(Block::List(sentences));
     }
     if !e.warnings.is_empty() {
-        parts.push(Block::Heading("What speaks against it".into()));
+        parts.push(Block::Heading("Warnings".into()));
         parts.push(Block::List(e.warnings.iter().map(ToString::to_string).collect()));
     }
     parts.extend(next(e));
@@ -39,8 +39,8 @@ pub(super) fn estimated(
     parts.extend(of_models(e));
     parts.extend(sensor(e));
     parts.push(Block::Heading("Segments".into()));
-    parts.push(segments(e, record, motion));
-    parts.extend(figures::motions(motion, record)?);
+    parts.extend(segments(e, record, motion));
+    parts.extend(figures::motions(motion, record, read.is_some_and(|read| !read.poses.has_rates()))?);
     parts.extend(figures::residuals(e, motion, record)?);
     parts.push(figures::invariants(e, motion, record)?);
     parts.extend(spikes(e, record));
@@ -55,26 +55,44 @@ pub(super) fn estimated(
 pub(super) fn refused(
     reason: &str,
     facts: Option<&Facts>,
-    record: &Record,
+    (record, as_read): (&Record, &AsRead),
     spans: &Spans,
     names: &str,
     form: Form,
 ) -> Result<String, Error> {
-    let mut parts = vec![Block::Verdict(Tone::Bad, format!("No inertia tensor: {reason}."))];
+    // what is open stands below
+    let why = match facts.and_then(|facts| facts.rank) {
+        Some(rank) => format!("the record determines {rank} of its 5 numbers"),
+        None => reason.into(),
+    };
+    let mut parts = vec![Block::Verdict(Tone::Bad, format!("No inertia tensor: {why}."))];
     if let Some(facts) = facts {
         parts.push(Block::Heading("Known".into()));
         let known = if facts.known.is_empty() { vec!["nothing".into()] } else { facts.known.clone() };
         parts.push(Block::List(known));
         parts.push(Block::Heading("Undetermined".into()));
         parts.push(Block::List(facts.open.clone()));
+        parts.push(Block::Heading("Next record".into()));
+        parts.push(Block::List(vec![facts.next.clone()]));
     }
+    parts.extend(read(as_read));
     parts.extend(spans.parts());
     parts.push(Block::Heading("Readings".into()));
     parts.extend(figures::readings(record)?);
     Ok(form.write(&format!("No inertia from {names}"), &parts))
 }
 
-fn answer(e: &Estimate) -> Vec<Block> {
+/// How the files were read.
+fn read(as_read: &AsRead) -> impl Iterator<Item = Block> {
+    // names of files stay as they are
+    let begun = |sentence: String| match sentence.strip_prefix("read:") {
+        Some(rest) => format!("Read:{rest}"),
+        None => sentence,
+    };
+    as_read.sentences().into_iter().map(move |sentence| Block::Paragraph(format!("{}.", begun(sentence))))
+}
+
+fn answer(e: &Estimate, as_read: &AsRead) -> Vec<Block> {
     let off = systematic(e);
     let row = |name: String, value: f64, sigma: f64, off: Option<f64>| {
         let places = digits(SURE * sigma);
@@ -85,7 +103,7 @@ fn answer(e: &Estimate) -> Vec<Block> {
     let [a, b, c] = [0, 1, 2].map(|k| format!("{:.*}", digits(e.sigma_principal[k]).min(6), e.principal[k]));
     let head = ["", "value", "95 %, statistical", "systematic"].map(String::from).to_vec();
     let mut rows: Vec<Vec<String>> = (0..3)
-        .map(|k| row(format!("I{}", k + 1), e.principal[k], e.sigma_principal[k], off.map(|o| o[k])))
+        .map(|k| row(format!("I{}/trace", k + 1), e.principal[k], e.sigma_principal[k], off.map(|o| o[k])))
         .collect();
     for (k, name) in ["I1/I3", "I2/I3"].into_iter().enumerate() {
         let squares = sensor_lines(e).map(|line| line.ratios[k] * line.ratios[k]);
@@ -100,6 +118,16 @@ fn answer(e: &Estimate) -> Vec<Block> {
     if off.is_some() {
         parts.push(Block::Paragraph(format!("Systematic: if the sensor is off by {}.", sizes(e))));
     }
+    let noise =
+        if e.noise_sigma > 0.0 { format!(", noise {:.2e} rad/s", e.noise_sigma) } else { String::new() };
+    let samples = counted(e.samples, "sample");
+    let record = format!(
+        "{samples} in {}, rate {} rad/s (rms){noise}",
+        counted(e.segments, "segment"),
+        four_digits(e.rms_rate)
+    );
+    parts.push(Block::Paragraph(format!("{record}.")));
+    parts.extend(read(as_read));
     let facts = [unexplained(e), mirror(e)].into_iter().flatten();
     parts.extend(facts.map(|fact| Block::Paragraph(format!("{}.", capital(&fact)))));
     if let Some(prior) = e.prior {
@@ -121,7 +149,7 @@ fn answer(e: &Estimate) -> Vec<Block> {
         let turn = e.sigma_axes[k].to_degrees();
         let turn = if turn < 90.0 { format!("± {turn:.*}°", digits(turn)) } else { "any".into() };
         let mut cells = vec![format!("{}", k + 1)];
-        cells.extend(axes.matrix().column(k).iter().map(|v| format!("{v:.5}")));
+        cells.extend(axes.matrix().column(k).iter().map(|v| minus(&component(*v))));
         cells.push(turn);
         cells
     });
@@ -132,7 +160,7 @@ fn answer(e: &Estimate) -> Vec<Block> {
         let head = ["", "x", "y", "z"].map(String::from).to_vec();
         let row = |i: usize| {
             let mut cells = vec![["x", "y", "z"][i].to_string()];
-            cells.extend((0..3).map(|k| format!("{:.6e}", entries[(i, k)])));
+            cells.extend((0..3).map(|k| minus(&format!("{:.6e}", entries[(i, k)]))));
             cells
         };
         parts.push(Block::Table(head, (0..3).map(row).collect()));
@@ -145,14 +173,24 @@ fn answer(e: &Estimate) -> Vec<Block> {
 pub(in crate::fit) fn against(warnings: usize) -> (Tone, String) {
     match warnings {
         0 => (Tone::Good, String::new()),
-        1 => (Tone::Doubtful, "; a warning speaks against it".into()),
-        count => (Tone::Doubtful, format!("; {count} warnings speak against it")),
+        count => (Tone::Doubtful, format!("; {}", counted(count, "warning"))),
     }
+}
+
+/// "1 sample", "2 samples".
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
+/// With the sign of typography.
+pub(in crate::fit) fn minus(number: &str) -> String {
+    number.replace('-', "\u{2212}")
 }
 
 /// With a capital letter first.
 pub(in crate::fit) fn capital(words: &str) -> String {
-    format!("{}{}", words[..1].to_uppercase(), &words[1..])
+    let mut letters = words.chars();
+    letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }
 
 fn next(e: &Estimate) -> Vec<Block> {
@@ -165,8 +203,9 @@ fn next(e: &Estimate) -> Vec<Block> {
 
 fn correlations(e: &Estimate) -> [Block; 2] {
     let head = core::iter::once("").chain(ENTRIES.map(|(name, ..)| name)).map(String::from).collect();
-    let rows = ENTRIES.iter().zip(correlation(&e.covariance)).map(|((name, ..), row)| {
-        let cells = row.map(|c| two_places(c).replace('-', "\u{2212}"));
+    let all = e.correlation();
+    let rows = ENTRIES.iter().enumerate().map(|(k, (name, ..))| {
+        let cells = all.row(k).iter().map(|c| minus(&two_places(*c))).collect::<Vec<_>>();
         core::iter::once(name.to_string()).chain(cells).collect()
     });
     let about = "Correlations of the entries of the tensor:".into();
@@ -209,7 +248,7 @@ fn of_models(e: &Estimate) -> Vec<Block> {
     if rows.is_empty() {
         return Vec::new();
     }
-    let cell = |cell: &String| cell.replace("+-", "±").replace('-', "\u{2212}");
+    let cell = |cell: &String| minus(&cell.replace("+-", "±"));
     let rows = rows.iter().map(|row| row.iter().map(cell).collect()).collect();
     let about = about_models(e);
     let about = format!("{}:", capital(&about));
@@ -227,12 +266,12 @@ fn sensor(e: &Estimate) -> Vec<Block> {
     }
     if !e.systematic.is_empty() {
         parts.push(Block::Paragraph(
-            "Change of the moments with errors that the fit takes to be zero:".into(),
+            "Change of the moments, shares of the trace, with errors that the fit takes to be zero:".into(),
         ));
         let head = ["error", "size", "unit", "I1", "I2", "I3"].map(String::from).to_vec();
         let rows = e.systematic.iter().map(|line| {
             let mut cells = vec![line.name.to_string(), format!("{}", line.size), line.unit.to_string()];
-            cells.extend(line.principal.iter().map(|x| format!("{x:.1e}").replace('-', "\u{2212}")));
+            cells.extend(line.principal.iter().map(|x| minus(&format!("{x:.1e}"))));
             cells
         });
         parts.push(Block::Table(head, rows.collect()));
@@ -240,36 +279,24 @@ fn sensor(e: &Estimate) -> Vec<Block> {
     parts
 }
 
-fn segments(e: &Estimate, record: &Record, motion: &[FittedMotion]) -> Block {
-    let names = [
-        "segment",
-        "from (s)",
-        "to (s)",
-        "samples",
-        "rms (rad/s)",
-        "noise (rad/s)",
-        "torque noise",
-        "weight",
-        "shift",
-    ];
-    let rows = motion.iter().filter_map(|m| {
-        let s = record.segments.get(m.segment)?;
-        let summary = e.per_segment.iter().find(|p| p.segment == m.segment);
-        let shown = |x: Option<f64>, places: usize| x.map_or("–".into(), |x| format!("{x:.places$e}"));
-        let fixed = |x: Option<f64>| x.map_or("–".into(), |x| format!("{x:.3}"));
-        Some(vec![
-            format!("{} {}", m.segment + 1, s.source()),
-            s.times().first().map_or(String::new(), |t| format!("{t:.3}")),
-            s.times().last().map_or(String::new(), |t| format!("{t:.3}")),
-            m.used.iter().filter(|used| **used).count().to_string(),
-            shown(m.rms(), 2),
-            shown(summary.map(|p| p.noise_sigma), 2),
-            shown(summary.map(|p| p.torque_noise), 1),
-            fixed(summary.map(|p| p.weight)),
-            fixed(summary.map(|p| p.shift)),
-        ])
+fn segments(e: &Estimate, record: &Record, motion: &[FittedMotion]) -> [Block; 2] {
+    let Segments { heads, legend, rows } = Segments::of(e);
+    // of attitudes the motion is compared with rates that nobody has measured
+    let has_rms = e.attitudes.is_none();
+    let rms = ["rms (rad/s)"].into_iter().filter(|_| has_rms);
+    let names = ["segment", "from (s)", "to (s)"].into_iter().chain(rms).chain(heads);
+    let rows = rows.into_iter().filter_map(|(segment, cells)| {
+        let s = record.segments.get(segment)?;
+        let left = motion.iter().find(|m| m.segment == segment).and_then(FittedMotion::rms);
+        let left = left.map_or("–".into(), |rms| format!("{rms:.2e}"));
+        let time = |t: Option<&f64>| t.map_or(String::new(), |t| format!("{t:.3}"));
+        let own =
+            [format!("{} {}", segment + 1, s.source()), time(s.times().first()), time(s.times().last())];
+        let all = own.into_iter().chain([left].into_iter().filter(|_| has_rms)).chain(cells);
+        Some(all.enumerate().map(|(k, cell)| if k > 0 { minus(&cell) } else { cell }).collect())
     });
-    Block::Table(names.map(String::from).to_vec(), rows.collect())
+    let table = Block::Table(names.map(String::from).collect(), rows.collect());
+    [table, Block::Paragraph(format!("{}.", capital(legend)))]
 }
 
 fn spikes(e: &Estimate, record: &Record) -> Vec<Block> {
@@ -281,8 +308,10 @@ fn spikes(e: &Estimate, record: &Record) -> Vec<Block> {
         format!("{source}, line {} ({:.4} s)", s.line, s.time)
     };
     let shown = e.spikes.iter().take(50).map(line).collect();
-    let mut parts =
-        vec![Block::Heading(format!("Spikes: {} samples left out", e.spikes.len())), Block::List(shown)];
+    let mut parts = vec![
+        Block::Heading(format!("Spikes: {} left out", counted(e.spikes.len(), "sample"))),
+        Block::List(shown),
+    ];
     if e.spikes.len() > 50 {
         parts.push(Block::Paragraph(format!("and {} more.", e.spikes.len() - 50)));
     }

@@ -28,7 +28,7 @@ pub(in super::super) fn sentences(e: &Estimate, read: Option<&Read>) -> Vec<Stri
     let source = if of.noise_is_given { "as given" } else { "as the motion leaves it" };
     let near = of
         .local_noise
-        .map_or(String::new(), |noise| format!("; neighbouring attitudes alone say {noise:.3e}"));
+        .map_or(String::new(), |noise| format!("; neighbouring attitudes alone say {noise:.3e} rad"));
     let mut lines = vec![
         format!("attitudes read as {}, {words} ({told})", read.form),
         format!(

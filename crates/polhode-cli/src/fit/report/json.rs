@@ -4,9 +4,8 @@ use nalgebra::{Matrix3, SMatrix};
 use polhode_fit::{Estimate, InvariantTrend, Nuisance, Record};
 use serde_json::{Map, Value, json};
 
-use super::super::attitudes::Read;
 use super::super::flights::Spans;
-use super::{attitudes, correlation, method, unused};
+use super::{Sources, attitudes, unused};
 
 fn square(m: &Matrix3<f64>) -> Vec<Vec<f64>> {
     (0..3).map(|i| (0..3).map(|j| m[(i, j)]).collect()).collect()
@@ -16,11 +15,12 @@ fn matrix(m: &SMatrix<f64, 6, 6>) -> Vec<Vec<f64>> {
     (0..6).map(|i| (0..6).map(|j| m[(i, j)]).collect()).collect()
 }
 
-pub(super) fn object(e: &Estimate, record: &Record, spans: &Spans, read: Option<&Read>) -> Value {
+pub(super) fn object(e: &Estimate, record: &Record, (spans, read, as_read): Sources<'_>) -> Value {
     let mut whole = answer(e);
     if let (Value::Object(all), Value::Object(more)) = (&mut whole, grounds(e, record, spans)) {
         all.extend(more);
         all.insert("attitudes".into(), attitudes::json(e, read));
+        all.insert("read_as".into(), as_read.json());
     }
     whole
 }
@@ -39,12 +39,13 @@ fn answer(e: &Estimate) -> Value {
         "sigma_ratios": e.sigma_ratios,
         "inertia": e.inertia.as_ref().map(|i| square(&i.tensor())),
         "inertia_covariance": e.inertia_covariance.as_ref().map(matrix),
+        "rms_rate": e.rms_rate,
         "noise_sigma": e.noise_sigma,
         "quanta": e.quanta,
         "samples": e.samples,
         "segments": e.segments,
         "radius": e.radius,
-        "method": method(e),
+        "method": e.method.words(),
         "identifiable": e.identifiability.complete(),
         "null_directions":
             e.identifiability.null_directions.iter().map(ToString::to_string).collect::<Vec<_>>(),
@@ -104,12 +105,13 @@ fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
         "rho": e.per_segment.iter().map(|s| s.torque_noise * s.weight).sum::<f64>(),
         "per_segment": e.per_segment.iter().map(|s| json!({
             "segment": s.segment + 1, "samples": s.samples, "noise_sigma": s.noise_sigma,
-            "torque_noise": s.torque_noise, "weight": s.weight, "shift": s.shift,
+            "torque_noise": s.torque_noise, "weight": s.weight, "shift": s.without.map(|w| w.shift),
+            "ratios_without": s.without.map(|w| w.ratios), "sigma_ratios_without": s.without.map(|w| w.sigma_ratios),
         })).collect::<Vec<_>>(),
         "spikes": e.spikes.iter().map(|s| json!({
             "segment": s.segment + 1, "line": s.line, "time": s.time,
         })).collect::<Vec<_>>(),
-        "correlation": correlation(&e.covariance),
+        "correlation": matrix(&e.correlation()),
         "next_steps": e.next_steps().iter().map(ToString::to_string).collect::<Vec<_>>(),
         "unused_columns": unused(record),
         "flights": spans.json(),

@@ -3,62 +3,64 @@
 pub(super) mod attitudes;
 mod json;
 mod rows;
+mod segments;
 mod text;
 
 use nalgebra::SMatrix;
+use polhode::num::Shown;
 use polhode_fit::{AverageAxis, ErrorFit, Estimate, Identifiability, Method, ModelFit, Record, Systematic};
+use polhode_pages::screen::wrapped;
 use polhode_pages::table::{Column, Format, Table, row};
 use serde_json::{Value, json};
 
 pub(super) use self::json::nuisances;
+pub(super) use self::segments::Segments;
 pub(super) use self::text::tensor;
+use super::as_read::AsRead;
 use super::attitudes::Read;
 use super::flights::Spans;
 
-/// How a tensor was found, in words.
-pub(super) fn method(e: &Estimate) -> &'static str {
-    match e.method {
-        Method::ExactMotion => "maximum likelihood on the exact motion of the free body",
-        Method::ExactMotionWithWheels => "maximum likelihood on the exact motion of the body with wheels",
-        Method::Smoother => {
-            "maximum likelihood by a Kalman filter and smoother about the motion under torques"
-        }
-        _ => METHOD,
-    }
-}
-
-/// How it is found from rates.
-const METHOD: &str = "weak form, generalised least squares on denoised samples";
 pub(super) const ENTRIES: [(&str, usize, usize); 6] =
     [("xx", 0, 0), ("yy", 1, 1), ("zz", 2, 2), ("xy", 0, 1), ("xz", 0, 2), ("yz", 1, 2)];
-
-/// The correlations of the entries xx, yy, zz, xy, xz, yz; those of one without a deviation are zero.
-pub(super) fn correlation(covariance: &SMatrix<f64, 6, 6>) -> [[f64; 6]; 6] {
-    let of = |i: usize, k: usize| {
-        let size = (covariance[(i, i)] * covariance[(k, k)]).sqrt();
-        if size > 0.0 { covariance[(i, k)] / size } else { 0.0 }
-    };
-    core::array::from_fn(|i| core::array::from_fn(|k| of(i, k)))
-}
 
 /// A correlation to two places, none with a minus sign before nothing.
 pub(super) fn two_places(correlation: f64) -> String {
     format!("{:.2}", (100.0 * correlation).round() / 100.0 + 0.0)
 }
 
+/// Where a record comes from: the spans of it that are fitted, its attitudes, and how its files were read.
+pub(super) type Sources<'a> = (&'a Spans, Option<&'a Read>, &'a AsRead);
+
 /// A tensor in full.
-pub(super) fn identified(
-    e: &Estimate,
-    record: &Record,
-    spans: &Spans,
-    read: Option<&Read>,
-    format: Format,
-) -> String {
+pub(super) fn identified(e: &Estimate, record: &Record, sources: Sources<'_>, format: Format) -> String {
     match format {
-        Format::Table => text::text(e, record, spans, read),
+        Format::Table => text::text(e, record, sources),
         Format::Csv => rows::rows(e).csv(),
-        Format::Json => pretty(&json::object(e, record, spans, read)),
+        Format::Json => pretty(&json::object(e, record, sources)),
     }
+}
+
+/// Columns that sentences are wrapped at.
+pub(super) const WIDTH: usize = 78;
+
+/// Sentences as lines of text, each begun anew.
+pub(super) fn wrapped_lines(sentences: &[String]) -> Vec<String> {
+    sentences.iter().map(|sentence| wrapped(sentence, WIDTH, 2)).collect()
+}
+
+/// The column of units, where rows are of several quantities.
+pub(super) fn unit_column() -> Column {
+    Column::new("unit", "", "unit of value and sigma, empty of ratios and other plain numbers")
+}
+
+/// `x` to four digits.
+pub(super) fn four_digits(x: f64) -> Shown {
+    Shown(format!("{x:.3e}").parse().unwrap_or(x))
+}
+
+/// A component of a unit vector, none with a minus sign before nothing.
+pub(super) fn component(x: f64) -> String {
+    format!("{:.5}", if x.abs() < 5e-6 { 0.0 } else { x })
 }
 
 /// Names of the columns that are not used, each once.
@@ -79,6 +81,8 @@ pub(super) struct Facts {
     pub(super) rank: Option<usize>,
     pub(super) known: Vec<String>,
     pub(super) open: Vec<String>,
+    /// Which record would tell more.
+    pub(super) next: String,
 }
 
 impl Facts {
@@ -87,73 +91,91 @@ impl Facts {
             rank: Some(what.rank),
             known: what.known.iter().map(ToString::to_string).collect(),
             open: what.null_directions.iter().map(ToString::to_string).collect(),
+            next: what.next_record(),
         }
     }
 
     pub(super) fn unsettled(axes: &[AverageAxis]) -> Self {
         let open = "the ratios of the moments, and the axes otherwise: the iteration did not converge";
-        Facts {
-            rank: None,
-            known: axes.iter().map(AverageAxis::to_string).collect(),
-            open: vec![open.into()],
-        }
+        let known = axes.iter().map(AverageAxis::to_string).collect();
+        Facts { known, ..Facts::nothing(open, "record longer, with a larger wobble") }
     }
 
     pub(super) fn not_free() -> Self {
         let open = "the tensor: nowhere in the record does the body rotate freely";
-        Facts { rank: None, known: Vec::new(), open: vec![open.into()] }
+        Facts::nothing(open, "throw the body, so that nothing but air acts on it")
     }
 
     pub(super) fn direction_open() -> Self {
         let open =
             "the tensor: the motion does not tell whether the attitudes are body to space or space to body";
-        Facts { rank: None, known: Vec::new(), open: vec![open.into()] }
+        Facts::nothing(open, "none: state the direction, which no motion of an axisymmetric body tells")
     }
 
     pub(super) fn driven() -> Self {
         let open = "the tensor: torques drive the body";
-        Facts { rank: None, known: Vec::new(), open: vec![open.into()] }
+        Facts::nothing(open, "throw the body, or cut out of the record what is free")
     }
 
     pub(super) fn contradicted() -> Self {
         let open = "the tensor: momenta of wheels and torques contradict the rates";
-        Facts { rank: None, known: Vec::new(), open: vec![open.into()] }
+        Facts::nothing(
+            open,
+            "with the wheels at rest and without these torques: it tells whether something else drives the body",
+        )
     }
 
-    pub(super) fn report(&self, record: &Record, spans: &Spans, format: Format) -> String {
+    fn nothing(open: &str, next: &str) -> Self {
+        Facts { rank: None, known: Vec::new(), open: vec![open.into()], next: next.into() }
+    }
+
+    pub(super) fn report(
+        &self,
+        record: &Record,
+        spans: &Spans,
+        (as_read, reason): (&AsRead, &str),
+        format: Format,
+    ) -> String {
         match format {
             Format::Json => pretty(&json!({
                 "shape": null, "principal": null, "axes": null, "covariance": null, "sigma_principal": null,
                 "inertia": null, "inertia_covariance": null, "noise_sigma": null,
-                "samples": record.samples(), "segments": record.segments.len(), "method": METHOD,
+                "samples": record.samples(), "segments": record.segments.len(), "method": Method::WeakForm.words(),
                 "identifiable": false, "rank": self.rank, "null_directions": self.open, "known": self.known,
+                "reason": reason, "next_steps": [self.next],
                 "triangle_slack": null, "active_constraints": [], "chi2_per_dof": null, "warnings": [],
-                "unused_columns": unused(record),
+                "unused_columns": unused(record), "read_as": as_read.json(),
                 "flights": spans.json(), "flight_limits": spans.limits(),
             })),
             Format::Csv => {
                 let columns = vec![
-                    Column::new("kind", "", "known or undetermined"),
+                    Column::new("kind", "", "known, undetermined, or the record that would tell more"),
                     Column::new("fact", "", "in words"),
                 ];
                 let mut table = Table::new("facts", "What the record tells.", columns);
                 self.known.iter().for_each(|fact| table.push(row!["known", fact.clone()]));
                 self.open.iter().for_each(|fact| table.push(row!["undetermined", fact.clone()]));
+                table.push(row!["next record", self.next.clone()]);
                 table.csv()
             }
             Format::Table => {
-                let list = |facts: &[String]| facts.iter().map(|f| format!("  {f}\n")).collect::<String>();
+                let lines = |facts: &[String]| {
+                    let each = facts.iter().map(|fact| format!("  {}\n", wrapped(fact, WIDTH - 2, 4)));
+                    each.collect::<String>()
+                };
                 let counted = self.rank.map(|rank| format!("{rank} of 5 numbers of the tensor are known.\n"));
+                let known = match (self.known.is_empty(), self.rank) {
+                    (true, None | Some(0)) => "  nothing\n".into(),
+                    (true, _) => "  no axis and no ratio, only combinations of them\n".into(),
+                    _ => lines(&self.known),
+                };
+                let read = wrapped_lines(&as_read.sentences());
                 format!(
-                    "{}Known:\n{}Undetermined:\n{}{}",
+                    "{}Known:\n{known}Undetermined:\n{}Next record:\n{}{}",
                     counted.unwrap_or_default(),
-                    match (self.known.is_empty(), self.rank) {
-                        (true, None | Some(0)) => "  nothing\n".into(),
-                        (true, _) => "  no axis and no ratio, only combinations of them\n".into(),
-                        _ => list(&self.known),
-                    },
-                    list(&self.open),
-                    spans.lines().iter().map(|line| format!("{line}\n")).collect::<String>()
+                    lines(&self.open),
+                    lines(core::slice::from_ref(&self.next)),
+                    spans.lines().into_iter().chain(read).map(|line| format!("{line}\n")).collect::<String>()
                 )
             }
         }

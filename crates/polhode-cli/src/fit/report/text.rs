@@ -4,20 +4,16 @@ use nalgebra::Matrix3;
 use polhode_fit::{Estimate, InvariantTrend, Nuisance, Record};
 use polhode_pages::screen::wrapped;
 
-use super::super::attitudes::Read;
-use super::super::flights::Spans;
 use super::{
-    ENTRIES, MODELS, SURE, about_models, attitudes, correlation, digits, method, mirror, models, sizes,
-    systematic, two_places, unexplained, unused, with_error,
+    ENTRIES, MODELS, SURE, Segments, Sources, WIDTH, about_models, attitudes, component, digits, four_digits,
+    mirror, models, sizes, systematic, two_places, unexplained, unused, with_error, wrapped_lines,
 };
 
-/// Columns that sentences are wrapped at.
-const WIDTH: usize = 78;
-
 /// The answer first, then what it rests on.
-pub(super) fn text(e: &Estimate, record: &Record, spans: &Spans, read: Option<&Read>) -> String {
+pub(super) fn text(e: &Estimate, record: &Record, (spans, read, as_read): Sources<'_>) -> String {
     let mut lines = answer(e);
-    lines.extend(attitudes::sentences(e, read));
+    lines.extend(wrapped_lines(&as_read.sentences()));
+    lines.extend(wrapped_lines(&attitudes::sentences(e, read)));
     lines.extend(next(e));
     lines.push(String::new());
     lines.extend(axes(e));
@@ -70,12 +66,12 @@ fn answer(e: &Estimate) -> Vec<String> {
     }
     let noise =
         if e.noise_sigma > 0.0 { format!(", noise {:.3e} rad/s", e.noise_sigma) } else { String::new() };
-    lines.push(format!(
-        "{} samples, segments: {}{noise}{}",
-        e.samples,
-        e.segments,
-        if e.spikes.is_empty() { String::new() } else { format!(", spikes left out: {}", e.spikes.len()) }
-    ));
+    let spikes =
+        if e.spikes.is_empty() { String::new() } else { format!(", spikes left out: {}", e.spikes.len()) };
+    let rate = four_digits(e.rms_rate);
+    let record =
+        format!("{} samples, segments: {}, rate {rate} rad/s (rms){noise}{spikes}", e.samples, e.segments);
+    lines.push(wrapped(&record, WIDTH, 2));
     lines.extend(unexplained(e));
     lines.extend(mirror(e).map(|line| line.replacen(": I1", ":\n  I1", 1)));
     lines
@@ -92,7 +88,8 @@ fn axes(e: &Estimate) -> Vec<String> {
         } else {
             "any turn about it".into()
         };
-        lines.push(format!("  {}  ({:8.5}, {:8.5}, {:8.5}) +- {turn}", k + 1, v[0], v[1], v[2]));
+        let [x, y, z] = [0, 1, 2].map(|i| component(v[i]));
+        lines.push(format!("  {}  ({x:>8}, {y:>8}, {z:>8}) +- {turn}", k + 1));
     }
     lines
 }
@@ -113,8 +110,9 @@ fn next(e: &Estimate) -> Vec<String> {
 
 fn correlations(e: &Estimate) -> Vec<String> {
     let head: String = ENTRIES.iter().map(|(name, ..)| format!("{name:>7}")).collect();
-    let rows = correlation(&e.covariance).map(|row| row.map(|c| format!("{:>7}", two_places(c))).concat());
-    let named = ENTRIES.iter().zip(rows).map(|((name, ..), row)| format!("  {name}{row}"));
+    let all = e.correlation();
+    let row = |row: usize| all.row(row).iter().map(|c| format!("{:>7}", two_places(*c))).collect::<String>();
+    let named = ENTRIES.iter().enumerate().map(|(k, (name, ..))| format!("  {name}{}", row(k)));
     [String::new(), "correlations of its entries:".into(), format!("    {head}")]
         .into_iter()
         .chain(named)
@@ -174,7 +172,8 @@ fn sensor(e: &Estimate) -> Vec<String> {
     if !e.systematic.is_empty() {
         lines.extend([
             String::new(),
-            "change of (I1, I2, I3) with an error of the sensor, or a wheel or magnet inside:".into(),
+            "change of (I1, I2, I3), shares of the trace, by an error of the sensor, or a".into(),
+            "wheel or magnet inside:".into(),
         ]);
         for line in &e.systematic {
             let [a, b, c] = line.principal;
@@ -190,21 +189,22 @@ fn segments(e: &Estimate) -> Vec<String> {
     if e.per_segment.len() < 2 {
         return Vec::new();
     }
-    let mut lines = vec![
-        String::new(),
-        "segment  samples  noise (rad/s)  torque noise  weight  shift if left out".into(),
-    ];
-    for s in &e.per_segment {
-        lines.push(format!(
-            "{:>7}  {:>7}  {:>13.3e}  {:>12.2e}  {:>6.3}  {:>18.2}",
-            s.segment + 1,
-            s.samples,
-            s.noise_sigma,
-            s.torque_noise,
-            s.weight,
-            s.shift
-        ));
-    }
+    let Segments { heads, legend, rows } = Segments::of(e);
+    let head = heads.iter().map(|head| head.to_string());
+    let head: Vec<String> = core::iter::once("segment".into()).chain(head).collect();
+    let row = |(segment, cells): (usize, Vec<String>)| {
+        core::iter::once((segment + 1).to_string()).chain(cells).collect::<Vec<String>>()
+    };
+    let all: Vec<Vec<String>> = core::iter::once(head).chain(rows.into_iter().map(row)).collect();
+    let line = |cells: &Vec<String>| {
+        let width = |k: usize| all.iter().map(|cells| cells[k].len()).max().unwrap_or(0);
+        let cells: Vec<String> =
+            cells.iter().enumerate().map(|(k, cell)| format!("{cell:>width$}", width = width(k))).collect();
+        cells.join("  ")
+    };
+    let mut lines = vec![String::new()];
+    lines.extend(all.iter().map(line));
+    lines.push(wrapped(legend, WIDTH, 2));
     lines
 }
 
@@ -228,10 +228,10 @@ fn quality(e: &Estimate) -> Vec<String> {
     };
     let told = |d: f64| if d.is_finite() { format!("{d:.1e}") } else { "none".into() };
     let spectrum = e.identifiability.deviations.map(told).join(", ");
-    let mut lines = vec![format!("method: {}", method(e))];
+    let mut lines = vec![wrapped(&format!("method: {}", e.method.words()), WIDTH, 2)];
     lines.extend(e.radius.map(|radius| format!("half width of the test functions: {radius:.4} s")));
     lines.extend([
-        "standard deviations of the five determined combinations:".into(),
+        "standard deviations of the five determined combinations, shares of the trace:".into(),
         format!("  {spectrum}"),
         e.bound_ratio.map_or("no Cramer-Rao bound for this tensor".into(), |r| {
             format!("standard deviation over the Cramer-Rao bound: {r:.3}")
@@ -244,12 +244,9 @@ fn quality(e: &Estimate) -> Vec<String> {
     ]);
     lines.extend(drift("|J w|", e.momentum_trend));
     lines.extend(drift("w J w", e.energy_trend));
-    lines.extend([
-        format!("I1 + I2 - I3: {}", with_error(e.triangle_slack, 2.0 * e.sigma_principal[2])),
-        format!(
-            "optimality: stationarity {:.1e}, violation {:.1e}, {} rounds of cuts",
-            e.certificate.stationarity, e.certificate.violation, e.certificate.rounds
-        ),
-    ]);
+    lines.extend([format!(
+        "I1 + I2 - I3: {} of the trace, 0 of a flat body",
+        with_error(e.triangle_slack, 2.0 * e.sigma_principal[2])
+    )]);
     lines
 }
