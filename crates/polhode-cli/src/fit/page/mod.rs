@@ -10,8 +10,8 @@ use polhode_pages::document::{Block, Form, Tone};
 use super::attitudes::Read;
 use super::flights::Spans;
 use super::report::{
-    ENTRIES, Facts, MODELS, SURE, about_models, attitudes, correlation, digits, mirror, models, sensor_lines,
-    sizes, systematic, two_places, unexplained, unused, with_error,
+    ENTRIES, Facts, MODELS, SURE, about_models, attitudes, correlation, digits, in_bursts, mirror, models,
+    sensor_lines, sizes, systematic, two_places, unexplained, unused, with_error,
 };
 
 /// The page of an estimate from the files `names`.
@@ -278,11 +278,15 @@ fn spikes(e: &Estimate, record: &Record) -> Vec<Block> {
     }
     let line = |s: &polhode_fit::Spike| {
         let source = record.segments.get(s.segment).map_or("", |segment| segment.source());
-        format!("{source}, line {} ({:.4} s)", s.line, s.time)
+        let burst = s.burst.map_or(String::new(), |k| format!(", burst {}", k + 1));
+        format!("{source}, line {} ({:.4} s){burst}", s.line, s.time)
     };
     let shown = e.spikes.iter().take(50).map(line).collect();
-    let mut parts =
-        vec![Block::Heading(format!("Spikes: {} samples left out", e.spikes.len())), Block::List(shown)];
+    let bursts = in_bursts(&e.spikes).map_or(String::new(), |of_these| format!(", {of_these}"));
+    let mut parts = vec![
+        Block::Heading(format!("Spikes: {} samples left out{bursts}", e.spikes.len())),
+        Block::List(shown),
+    ];
     if e.spikes.len() > 50 {
         parts.push(Block::Paragraph(format!("and {} more.", e.spikes.len() - 50)));
     }

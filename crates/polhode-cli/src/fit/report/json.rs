@@ -102,7 +102,7 @@ fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
             "torque_noise": s.torque_noise, "weight": s.weight, "shift": s.shift,
         })).collect::<Vec<_>>(),
         "spikes": e.spikes.iter().map(|s| json!({
-            "segment": s.segment + 1, "line": s.line, "time": s.time,
+            "segment": s.segment + 1, "line": s.line, "time": s.time, "burst": s.burst.map(|k| k + 1),
         })).collect::<Vec<_>>(),
         "correlation": correlation(&e.covariance),
         "next_steps": e.next_steps().iter().map(ToString::to_string).collect::<Vec<_>>(),

@@ -7,8 +7,8 @@ use polhode_pages::screen::wrapped;
 use super::super::attitudes::Read;
 use super::super::flights::Spans;
 use super::{
-    ENTRIES, MODELS, SURE, about_models, attitudes, correlation, digits, method, mirror, models, sizes,
-    systematic, two_places, unexplained, unused, with_error,
+    ENTRIES, MODELS, SURE, about_models, attitudes, correlation, digits, in_bursts, method, mirror, models,
+    sizes, systematic, two_places, unexplained, unused, with_error,
 };
 
 /// Columns that sentences are wrapped at.
@@ -70,12 +70,12 @@ fn answer(e: &Estimate) -> Vec<String> {
     }
     let noise =
         if e.noise_sigma > 0.0 { format!(", noise {:.3e} rad/s", e.noise_sigma) } else { String::new() };
-    lines.push(format!(
-        "{} samples, segments: {}{noise}{}",
-        e.samples,
-        e.segments,
-        if e.spikes.is_empty() { String::new() } else { format!(", spikes left out: {}", e.spikes.len()) }
-    ));
+    let left_out = match (e.spikes.len(), in_bursts(&e.spikes)) {
+        (0, _) => String::new(),
+        (spikes, None) => format!(", spikes left out: {spikes}"),
+        (spikes, Some(of_these)) => format!(", spikes left out: {spikes} ({of_these})"),
+    };
+    lines.push(format!("{} samples, segments: {}{noise}{left_out}", e.samples, e.segments));
     lines.extend(unexplained(e));
     lines.extend(mirror(e).map(|line| line.replacen(": I1", ":\n  I1", 1)));
     lines
