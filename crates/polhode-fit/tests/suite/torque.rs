@@ -390,16 +390,6 @@ fn bursts_are_left_out_and_counted() {
     assert!(trials.covered >= 12);
 }
 
-#[test]
-#[ignore = "an ensemble: takes seconds, `.ci/run` does it"]
-fn records_with_bursts_are_fitted_as_those_without() {
-    let trials = with_bursts(100, 43);
-    // √(mean χ²₅/5) scatters by √(2/500)/2 = 0.03
-    assert!(trials.refused == 0 && (0.85..1.15).contains(&trials.over_bound()), "{:.3}", trials.over_bound());
-    // 0.95 ± 4 √(0.95·0.05/100)
-    assert!(trials.covered >= 86, "{}", trials.covered);
-}
-
 /// A wheel whose momentum is known gives the tensor its size.
 #[test]
 fn a_wheel_gives_the_absolute_tensor() {
