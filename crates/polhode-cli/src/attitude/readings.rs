@@ -64,6 +64,7 @@ struct Found {
     saturated: usize,
     new_readings_rate: Option<f64>,
     spikes: usize,
+    in_bursts: usize,
     first_spike: Option<Spike>,
 }
 
@@ -179,7 +180,8 @@ impl Readings {
 
     /// What was left out or changed.
     fn tell(&self) {
-        let Found { samples, merged, repeated, saturated, new_readings_rate, spikes, .. } = self.found;
+        let Found { samples, merged, repeated, saturated, new_readings_rate, spikes, in_bursts, .. } =
+            self.found;
         tell_skipped(self.parts.skipped(), samples);
         if merged > 0 {
             warn(&format!("{merged} rows have the time of the row before: their rates are averaged"));
@@ -190,7 +192,9 @@ impl Readings {
         }
         if let Some(first) = self.found.first_spike {
             let (line, time) = (first.line, short(first.time));
-            warn(&format!("{spikes} spikes are left out, the first at line {line} ({time} s)"));
+            let bursts =
+                if in_bursts > 0 { format!(", {in_bursts} of them in bursts") } else { String::new() };
+            warn(&format!("{spikes} spikes are left out{bursts}, the first at line {line} ({time} s)"));
         }
         if saturated > 0 && self.segments < 2 {
             warn(&format!(
@@ -233,6 +237,7 @@ impl Found {
         self.saturated += record.saturated();
         self.new_readings_rate = self.new_readings_rate.or(record.new_readings_rate());
         self.spikes += part.spikes.len();
+        self.in_bursts += Spike::bursts(&part.spikes).0;
         self.first_spike = self.first_spike.or(part.spikes.first().copied());
     }
 }

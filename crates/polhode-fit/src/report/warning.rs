@@ -46,6 +46,15 @@ pub enum Warning {
         /// Line of the first of them.
         line: usize,
     },
+    /// Samples in bursts were left out: rows of them that stand out of the samples before and after.
+    Bursts {
+        /// Samples that were left out.
+        samples: usize,
+        /// Bursts in which they lie.
+        bursts: usize,
+        /// Line of the first of them.
+        line: usize,
+    },
     /// The residuals ask for a torque at random, which is more than a small part of what drives the body.
     TorqueNoise {
         /// Largest power spectral density of the angular acceleration among the segments, (rad/s²)² s.
@@ -239,6 +248,15 @@ impl fmt::Display for Warning {
                 "{} left out as standing far out of what their neighbours foresee; the first is in line {line}",
                 counted(*samples, "was", "were")
             ),
+            Self::Bursts { samples, bursts, line } => {
+                let plural = if *bursts == 1 { "burst" } else { "bursts" };
+                write!(
+                    f,
+                    "{} left out in {bursts} {plural}: consecutive samples that stand far out of those before and after \
+                     them, which agree with each other; the first is in line {line}",
+                    counted(*samples, "was", "were")
+                )
+            }
             Self::TorqueNoise { density, unexplained } => {
                 write!(f, "torques at random are part of the fit, with a density of up to {density:.1e} (rad/s^2)^2 s")?;
                 if let Some(share) = unexplained {

@@ -5,7 +5,7 @@ use crate::thresholds::noise::DEVIATIONS;
 use crate::thresholds::poses::{DOUBTFUL, MOVING};
 use crate::thresholds::warnings::{APART, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, UNEXPLAINED};
 use nalgebra::Vector3;
-use polhode::record::{Record, Segment};
+use polhode::record::{Record, Segment, Spike};
 
 use crate::models::reading_error::ReadingError;
 use crate::report::attitudes::AttitudeFit;
@@ -96,8 +96,14 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     if record.saturated() > 0 {
         list.push(Warning::Saturated { samples: record.saturated() });
     }
-    if let Some(first) = e.spikes.first() {
-        list.push(Warning::Spikes { samples: e.spikes.len(), line: first.line });
+    let (in_bursts, alone): (Vec<&Spike>, Vec<&Spike>) =
+        e.spikes.iter().partition(|spike| spike.burst.is_some());
+    if let Some(first) = alone.first() {
+        list.push(Warning::Spikes { samples: alone.len(), line: first.line });
+    }
+    if let Some(first) = in_bursts.first() {
+        let (samples, bursts) = Spike::bursts(&e.spikes);
+        list.push(Warning::Bursts { samples, bursts, line: first.line });
     }
     let short = record.segments.len() - e.segments;
     if short > 0 {

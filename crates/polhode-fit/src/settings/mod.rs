@@ -49,7 +49,7 @@ pub struct Settings {
     pub torque_noise: TorqueNoise,
     /// What may be wrong with the sensor.
     pub sensor: SensorPriors,
-    /// Whether single samples that stand out of their neighbours are left out.
+    /// Whether samples that stand out of their neighbours, alone or in bursts, are left out.
     pub leave_out_spikes: bool,
 }
 

@@ -11,7 +11,7 @@ use super::as_read::AsRead;
 use super::flights::Spans;
 use super::report::{
     ENTRIES, Facts, MODELS, SURE, Segments, Sources, about_models, attitudes, component, digits, four_digits,
-    mirror, models, sensor_lines, sizes, systematic, two_places, unexplained, unused, with_error,
+    in_bursts, mirror, models, sensor_lines, sizes, systematic, two_places, unexplained, unused, with_error,
 };
 
 /// The page of an estimate from the files `names`.
@@ -305,11 +305,13 @@ fn spikes(e: &Estimate, record: &Record) -> Vec<Block> {
     }
     let line = |s: &polhode_fit::Spike| {
         let source = record.segments.get(s.segment).map_or("", |segment| segment.source());
-        format!("{source}, line {} ({:.4} s)", s.line, s.time)
+        let burst = s.burst.map_or(String::new(), |k| format!(", burst {}", k + 1));
+        format!("{source}, line {} ({:.4} s){burst}", s.line, s.time)
     };
     let shown = e.spikes.iter().take(50).map(line).collect();
+    let bursts = in_bursts(&e.spikes).map_or(String::new(), |of_these| format!(", {of_these}"));
     let mut parts = vec![
-        Block::Heading(format!("Spikes: {} left out", counted(e.spikes.len(), "sample"))),
+        Block::Heading(format!("Spikes: {} left out{bursts}", counted(e.spikes.len(), "sample"))),
         Block::List(shown),
     ];
     if e.spikes.len() > 50 {

@@ -109,7 +109,7 @@ fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
             "ratios_without": s.without.map(|w| w.ratios), "sigma_ratios_without": s.without.map(|w| w.sigma_ratios),
         })).collect::<Vec<_>>(),
         "spikes": e.spikes.iter().map(|s| json!({
-            "segment": s.segment + 1, "line": s.line, "time": s.time,
+            "segment": s.segment + 1, "line": s.line, "time": s.time, "burst": s.burst.map(|k| k + 1),
         })).collect::<Vec<_>>(),
         "correlation": matrix(&e.correlation()),
         "next_steps": e.next_steps().iter().map(ToString::to_string).collect::<Vec<_>>(),

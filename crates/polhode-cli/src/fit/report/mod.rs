@@ -6,9 +6,10 @@ mod rows;
 mod segments;
 mod text;
 
-use nalgebra::SMatrix;
 use polhode::num::Shown;
-use polhode_fit::{AverageAxis, ErrorFit, Estimate, Identifiability, Method, ModelFit, Record, Systematic};
+use polhode_fit::{
+    AverageAxis, ErrorFit, Estimate, Identifiability, Method, ModelFit, Record, Spike, Systematic,
+};
 use polhode_pages::screen::wrapped;
 use polhode_pages::table::{Column, Format, Table, row};
 use serde_json::{Value, json};
@@ -256,6 +257,15 @@ pub(super) fn unexplained(e: &Estimate) -> Option<String> {
     let share = 100.0 * e.unexplained?;
     let places = digits(share).min(4);
     Some(format!("free motion leaves {share:.places$} % of |dw/dt|^2 unexplained"))
+}
+
+/// How many of the samples that were left out lie in bursts, where any do.
+pub(super) fn in_bursts(spikes: &[Spike]) -> Option<String> {
+    match Spike::bursts(spikes) {
+        (0, _) => None,
+        (samples, 1) => Some(format!("{samples} of them in a burst")),
+        (samples, bursts) => Some(format!("{samples} of them in {bursts} bursts")),
+    }
 }
 
 /// The moments that left-handed axes would mean, in one sentence.

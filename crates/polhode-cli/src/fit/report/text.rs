@@ -6,7 +6,7 @@ use polhode_pages::screen::wrapped;
 
 use super::{
     ENTRIES, MODELS, SURE, Segments, Sources, WIDTH, about_models, attitudes, component, digits, four_digits,
-    mirror, models, sizes, systematic, two_places, unexplained, unused, with_error, wrapped_lines,
+    in_bursts, mirror, models, sizes, systematic, two_places, unexplained, unused, with_error, wrapped_lines,
 };
 
 /// The answer first, then what it rests on.
@@ -66,11 +66,14 @@ fn answer(e: &Estimate) -> Vec<String> {
     }
     let noise =
         if e.noise_sigma > 0.0 { format!(", noise {:.3e} rad/s", e.noise_sigma) } else { String::new() };
-    let spikes =
-        if e.spikes.is_empty() { String::new() } else { format!(", spikes left out: {}", e.spikes.len()) };
+    let left_out = match (e.spikes.len(), in_bursts(&e.spikes)) {
+        (0, _) => String::new(),
+        (spikes, None) => format!(", spikes left out: {spikes}"),
+        (spikes, Some(of_these)) => format!(", spikes left out: {spikes} ({of_these})"),
+    };
     let rate = four_digits(e.rms_rate);
     let record =
-        format!("{} samples, segments: {}, rate {rate} rad/s (rms){noise}{spikes}", e.samples, e.segments);
+        format!("{} samples, segments: {}, rate {rate} rad/s (rms){noise}{left_out}", e.samples, e.segments);
     lines.push(wrapped(&record, WIDTH, 2));
     lines.extend(unexplained(e));
     lines.extend(mirror(e).map(|line| line.replacen(": I1", ":\n  I1", 1)));
