@@ -147,7 +147,7 @@ impl Estimate {
     fn contradiction(&self) -> Option<Contradiction> {
         let of = |warning: &Warning| match warning {
             Warning::LeftOut { what, remedy, .. } => {
-                Some(Contradiction::LeftOut { what: *what, is_of_sensor: !remedy.is_empty() })
+                Some(Contradiction::LeftOut { what, is_of_sensor: !remedy.is_empty() })
             }
             Warning::Halves(_) | Warning::Scatter(_) | Warning::Differing { .. } => {
                 Some(Contradiction::Parts)
