@@ -10,8 +10,8 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use polhode_files::error::{Error, warn};
-use polhode_files::instant::positive_duration;
-use polhode_files::numbers::{number, numbers, positive};
+use polhode_files::instant::{duration, positive_duration};
+use polhode_files::numbers::{numbers, positive};
 use polhode_pages::figure::Canvas;
 use polhode_pages::output::Output;
 
@@ -106,8 +106,8 @@ pub(crate) struct Plot {
     /// End of the motion: s, or with a unit (ms, min, h, d)
     #[arg(long, value_name = "T", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Motion")]
     until: f64,
-    /// Time of the start, s; forces may depend on it
-    #[arg(long, value_name = "t0", value_parser = number, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Motion")]
+    /// Time of the start: s, or with a unit; forces may depend on it
+    #[arg(long, value_name = "t0", value_parser = duration, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Motion")]
     start_time: f64,
     /// Method: exact, or BASE[:ARGUMENT][@SCHEME][+phase]; see `polhode methods`
     #[arg(long, value_name = "NAME", default_value = "exact", help_heading = "Motion")]

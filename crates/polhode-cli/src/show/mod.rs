@@ -12,8 +12,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 use polhode::body::{Body, Problem};
 use polhode::flow::ExactMotion;
 use polhode_files::error::{Error, tell};
-use polhode_files::instant::positive_duration;
-use polhode_files::numbers::{number, positive};
+use polhode_files::instant::{duration, positive_duration};
+use polhode_files::numbers::positive;
 use polhode_files::text::{rounded, short};
 use polhode_pages::output::Output;
 use polhode_pages::scene::{Scene, Track};
@@ -68,8 +68,8 @@ pub(crate) struct Show {
     /// End of the motion: s, or with a unit (ms, min, h, d) [default: that of the file of --against, else some turns or flips]
     #[arg(long, value_name = "T", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Motion")]
     until: Option<f64>,
-    /// Time of the start, s; forces may depend on it
-    #[arg(long, value_name = "t0", value_parser = number, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Motion")]
+    /// Time of the start: s, or with a unit; forces may depend on it
+    #[arg(long, value_name = "t0", value_parser = duration, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Motion")]
     start_time: f64,
     /// Method of the first body: exact, or BASE[:ARGUMENT][@SCHEME][+phase] [default: exact where there is a closed form, else taylor]
     #[arg(long, value_name = "NAME", help_heading = "Motion")]

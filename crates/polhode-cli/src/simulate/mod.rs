@@ -9,7 +9,8 @@ use clap::Args;
 use nalgebra::Vector3;
 use polhode::num::Random;
 use polhode_files::error::Error;
-use polhode_files::numbers::{not_negative, number, numbers, positive};
+use polhode_files::instant::positive_duration;
+use polhode_files::numbers::{not_negative, number, numbers};
 use polhode_fit::{SimulatedPoses, simulate_poses};
 use polhode_pages::table::{Cell, Column, Format, RowWriter, Table};
 
@@ -42,11 +43,11 @@ pub(crate) struct Simulate {
     /// Angular velocity at the start, body axes, rad/s [default: that of the catalogue's body]
     #[arg(long, value_name = "wx,wy,wz", value_parser = numbers::<3>, allow_hyphen_values = true, help_heading = "Start")]
     omega: Option<[f64; 3]>,
-    /// Duration, s
-    #[arg(long, value_name = "T", value_parser = positive, allow_hyphen_values = true, help_heading = "Record")]
+    /// Duration: s, or with a unit (ms, min, h, d)
+    #[arg(long, value_name = "T", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Record")]
     until: f64,
-    /// Time between samples, s
-    #[arg(long, value_name = "DT", value_parser = positive, allow_hyphen_values = true, help_heading = "Record")]
+    /// Time between samples, in the same way
+    #[arg(long, value_name = "DT", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Record")]
     every: f64,
     /// Scatter of the sample times, as a fraction of DT; below 1
     #[arg(long, value_name = "FRACTION", value_parser = jitter, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Record")]
@@ -57,8 +58,8 @@ pub(crate) struct Simulate {
     /// Number of tosses, each a motion of its own of duration T
     #[arg(long, value_name = "N", default_value = "1", help_heading = "Record")]
     tosses: NonZeroUsize,
-    /// Time between two tosses, s [default: 20 DT]
-    #[arg(long, value_name = "P", value_parser = positive, allow_hyphen_values = true, help_heading = "Record")]
+    /// Time between two tosses, in the same way [default: 20 DT]
+    #[arg(long, value_name = "P", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Record")]
     pause: Option<f64>,
     /// Standard deviation of each component of the later tosses' starts about --omega, rad/s
     #[arg(long, value_name = "SIGMA", value_parser = not_negative, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Record")]

@@ -195,7 +195,8 @@ impl Ladder<'_> {
             let more = coefficients(&next).saturating_sub(coefficients(&best));
             let asked = match best.model {
                 TorqueModel::None => asked(next.model),
-                _ if more == 0 => 0.0,
+                // as many coefficients of another torque fit noise as well: one that was chosen gives way to what surely explains more
+                _ if more == 0 => FIRST,
                 _ => threshold(more),
             };
             let surpasses = !best.weak.has_settled() || next.likelihood - best.likelihood > asked;
