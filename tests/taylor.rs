@@ -4,8 +4,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU32, Ordering};
 
 use crate::motions::{Magnet, free, magnet, run, satellite, started, top};
-use nalgebra::{UnitQuaternion, Vector3};
-use polhode::body::{Body, Clock, Force, Point, State, Time, Torque};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use polhode::body::{Body, Clock, Force, Orbit, Point, State, Time, Torque};
 use polhode::flow::ExactMotion;
 use polhode::inertia::Inertia;
 use polhode::method::method;
@@ -37,6 +37,17 @@ fn errors_follow_the_tolerance_down_to_rounding() {
     }
 }
 
+/// Axes that are not principal, a circle that is run through clockwise, which has recurrences of its own, and a hyperbola, whose law is
+/// taken on series beside it.
+fn pulled_from_two_sides() -> (Body, State) {
+    let tensor = Matrix3::new(10.0, 1.0, -2.0, 1.0, 25.0, 3.0, -2.0, 3.0, 30.0);
+    let hyperbola = Orbit::conic(4e-6, 2.0, 1.7).unwrap().passing_at(3000.0).unwrap();
+    let body = Body::free(Inertia::from_tensor(tensor).unwrap())
+        .with(Force::gravity_gradient(-0.001, 0.0).unwrap())
+        .with(Force::gravity_gradient_on(hyperbola.in_plane([0.3, 0.8, 1.1]).unwrap()));
+    started(body, [2e-4, -3e-4, 1.2e-3])
+}
+
 /// Two methods of different kinds in double-double: laws on series, times and orbits on series, axes that are not principal.
 #[test]
 fn forces_on_series_are_those_of_a_composition_in_double_double() {
@@ -52,6 +63,7 @@ fn forces_on_series_are_those_of_a_composition_in_double_double() {
             4000.0,
             1e-22,
         ),
+        ("satellite pulled from two sides", pulled_from_two_sides(), 4000.0, 1e-22),
     ] {
         let end = |name: &str, steps: u64| {
             let mut x = body.enter(&start).unwrap();

@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use super::law::Evaluated;
-use super::{Force, LinearPotential, Time};
+use super::{Force, LinearPotential, Orbit, Time};
 use crate::num::{Dd, Real, Series, Tape};
 use crate::rotation::{Quat, Vec3};
 
@@ -23,7 +23,20 @@ pub trait Field<S: Real>: Clone + Send + Sync + 'static {
     /// The torque of all the rest.
     fn remainder(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S>;
 
-    /// The same on power series, each force a part of the [tape](crate::num::Tape); `None` where a force cannot be evaluated on them.
+    /// Of a gravity gradient of the rest, on a body with the moments of the rotor: its orbit, a conic, and which force it is, counted from 0.
+    #[inline]
+    fn gradient(&self) -> Option<(usize, &Orbit)> {
+        None
+    }
+
+    /// Whether the rest is more than the [`gradient`](Self::gradient).
+    #[inline]
+    fn has_series(&self) -> bool {
+        Self::HAS_REMAINDER
+    }
+
+    /// The torque of the rest but for the [`gradient`](Self::gradient) on power series, each force a part of the
+    /// [tape](crate::num::Tape); `None` where a force cannot be evaluated on them.
     #[inline]
     fn remainder_series(&self, _: Time, _: Quat<Series<S>>, _: Vec3<Series<S>>) -> Option<Vec3<Series<S>>> {
         None
@@ -78,6 +91,8 @@ impl<S: Real> Field<S> for LinearPotential<S> {
 pub(crate) struct Forces<S> {
     linear: Option<LinearPotential<S>>,
     others: Arc<[Force]>,
+    /// Which of them is a gravity gradient on a conic.
+    gradient: Option<usize>,
     /// Takes coordinates along principal axes to body coordinates; `None` where they are the same.
     frame: Option<Quat<S>>,
     /// What divides the torque.
@@ -102,15 +117,19 @@ pub(crate) struct Failure {
 pub(crate) type Witness = Arc<OnceLock<Failure>>;
 
 impl<S: Evaluated> Forces<S> {
+    /// Of a body that `is_whole` the inertia of the rotor is all there is: none is that of wheels which turn freely.
     pub(super) fn new(
         linear: Option<LinearPotential<S>>,
         others: impl Iterator<Item = Force>,
         frame: Option<Quat<Dd>>,
         scale: f64,
+        is_whole: bool,
         witness: Option<Witness>,
     ) -> Self {
         let frame = frame.map(|frame| frame.map(S::from_dd));
-        Forces { linear, others: others.collect(), frame, scale, witness }
+        let others: Arc<[Force]> = others.collect();
+        let gradient = others.iter().position(|force| is_whole && force.conic().is_some());
+        Forces { linear, others, gradient, frame, scale, witness }
     }
 
     /// Potential energy, divided by the scale.
@@ -178,6 +197,15 @@ impl<S: Evaluated> Field<S> for Forces<S> {
         self.sum(at, self.frame, attitude, omega_body, evaluate).unwrap_or(Vec3::zero())
     }
 
+    fn gradient(&self) -> Option<(usize, &Orbit)> {
+        let force = self.gradient?;
+        Some((force, self.others.get(force)?.conic()?))
+    }
+
+    fn has_series(&self) -> bool {
+        self.others.len() > usize::from(self.gradient.is_some())
+    }
+
     fn remainder_series(
         &self,
         at: Time,
@@ -185,8 +213,14 @@ impl<S: Evaluated> Field<S> for Forces<S> {
         omega_body: Vec3<Series<S>>,
     ) -> Option<Vec3<Series<S>>> {
         let frame = self.frame.map(|frame| frame.map(Series::number));
+        let gradient = self.gradient.and_then(|k| self.others.get(k));
         let evaluate = |force: &Force, attitude, omega| {
-            let torque = force.series.as_ref().map(|law| S::series(law, at, attitude, omega));
+            let is_gradient = gradient.is_some_and(|gradient| core::ptr::eq(gradient, force));
+            let law = force.series.as_ref();
+            let torque = match is_gradient {
+                true => Some(Vec3::zero()),
+                false => law.map(|law| S::series(law, at, attitude, omega)),
+            };
             Tape::<S>::end_part();
             torque
         };

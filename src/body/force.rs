@@ -98,6 +98,11 @@ impl Force {
         Force { orbit: Some(orbit), ..self }
     }
 
+    /// Of a gravity gradient on a conic that acts always, the conic.
+    pub(super) fn conic(&self) -> Option<&Orbit> {
+        self.orbit.as_ref().filter(|orbit| orbit.is_conic() && self.switched.is_none())
+    }
+
     /// The same force as it acts on a body with the inertia `inertia`.
     pub(super) fn on(self, inertia: &Inertia) -> Self {
         match self.orbit.clone() {

@@ -37,7 +37,7 @@ pub(crate) use law::Evaluated;
 pub use law::{Conserved, Potential, Torque};
 pub use linear_potential::{LinearPotential, vertical};
 pub use orbit::Orbit;
-pub(crate) use orbit::Place;
+pub(crate) use orbit::{Place, TrueAnomaly};
 pub(crate) use point::RENORMALIZE_EVERY;
 pub use point::{Phase, Point};
 #[cfg(any(test, feature = "random"))]

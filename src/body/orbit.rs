@@ -21,6 +21,9 @@ const NAME: &str = "orbit";
 /// before.
 const MOST_DESCENTS: u32 = 2048;
 
+/// Powers of larger eccentricities leave the range of doubles.
+const STRAIGHT: f64 = 1e60;
+
 /// A place in `f64`, before the orbit is turned in space.
 #[derive(Clone, Copy)]
 struct Seen {
@@ -91,6 +94,46 @@ enum Speed {
 pub(crate) struct Place<S> {
     pub(crate) strength: S,
     pub(crate) direction: Vec3<S>,
+}
+
+/// The true anomaly f on a conic with the semi-latus rectum p: `f' = k (p/r)²` and 3 GM/r³ = 3 k² (p/r)³.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TrueAnomaly<S> {
+    /// To the body, and along the normal of the orbit, in space.
+    pub(crate) direction: Vec3<S>,
+    pub(crate) normal: Vec3<S>,
+    /// p/r = 1 + e cos f.
+    pub(crate) near: S,
+    /// e cos f and e sin f; `None` of a circle.
+    pub(crate) eccentric: Option<[S; 2]>,
+    /// k = √(GM/p³), 1/s, negative where the orbit is run through clockwise.
+    pub(crate) rate: S,
+}
+
+/// A place on a conic in its plane, in semi-major axes or least distances.
+struct Along<S> {
+    place: [S; 2],
+    /// Over the time in seconds; `None` of a circle in uniform motion.
+    velocity: Option<[S; 2]>,
+    /// The reciprocal of the distance.
+    near: S,
+}
+
+impl<S: Real> Along<S> {
+    /// The direction to the body.
+    fn direction(&self) -> [S; 2] {
+        self.place.map(|x| x * self.near)
+    }
+
+    /// 3 GM/r³ and the direction to the body, `rate` the square root of GM.
+    fn pull(&self, rate: S) -> (S, [S; 2]) {
+        let [x, y] = self.place;
+        if let Some(found) = self.velocity.and_then(|[u, v]| pulled(rate * rate, [x, y, u, v])) {
+            return found;
+        }
+        let near = self.near;
+        (S::of(3.0) * rate * rate * (near * near * near), self.direction())
+    }
 }
 
 impl Orbit {
@@ -214,14 +257,19 @@ impl Orbit {
     }
 
     pub(crate) fn at<S: Real>(&self, at: Time) -> Place<S> {
-        // the bits of a time from which nothing is taken stay
-        let at = if self.passage == 0.0 { at } else { at.later(Dd::of(-self.passage)) };
-        let (strength, direction) = self.seen(at.dd());
+        let (strength, direction) = self.seen(self.since_passage(at));
         let direction = match self.plane {
             None => direction,
-            Some(Quat { w, v }) => Quat::new(S::from_dd(w), Vec3(v.0.map(S::from_dd))).rotate(direction),
+            Some(plane) => plane.map(S::from_dd).rotate(direction),
         };
         Place { strength, direction }
+    }
+
+    /// The time since the least distance, s.
+    fn since_passage(&self, at: Time) -> Dd {
+        // the bits of a time from which nothing is taken stay
+        let at = if self.passage == 0.0 { at } else { at.later(Dd::of(-self.passage)) };
+        at.dd()
     }
 
     /// As [`before_turning`](Self::before_turning), in `f64` once for each time.
@@ -246,33 +294,59 @@ impl Orbit {
 
     /// 3 GM/r³ and r̂ in the plane of the orbit, of a table in space, `time` (s) since the least distance.
     fn before_turning<S: Real>(&self, time: Dd) -> (S, Vec3<S>) {
-        let in_plane = |(strength, [x, y]): (S, [S; 2])| (strength, Vec3([x, y, S::of(0.0)]));
-        match &self.speed {
-            Speed::Mean(rate) => in_plane(self.by_mean_motion(*rate, time)),
-            Speed::AtPassage { rate, period } => in_plane(self.by_universal_variable(*rate, *period, time)),
-            Speed::Table(table) => table.at(time),
-        }
+        let (rate, along) = match &self.speed {
+            Speed::Mean(rate) => (S::of(*rate), self.by_mean_motion(*rate, time)),
+            Speed::AtPassage { rate, period } => {
+                (S::from_dd(*rate), self.by_universal_variable(*rate, *period, time))
+            }
+            Speed::Table(table) => return table.at(time),
+        };
+        let (strength, [x, y]) = along.pull(rate);
+        (strength, Vec3([x, y, S::of(0.0)]))
     }
 
-    /// Of a circle or an ellipse, 3 n² (a/r)³ and r̂ in the plane of the orbit.
-    fn by_mean_motion<S: Real>(&self, rate: f64, now: Dd) -> (S, [S; 2]) {
-        let one = S::of(1.0);
-        let (x, y, near) = if self.eccentricity == 0.0 {
-            let (sin, cos) = S::linear(reduced_angle(now, rate), rate).sin_cos();
-            (cos, sin, one)
-        } else {
-            let e = S::of(self.eccentricity);
-            let (sin, cos) = self.eccentric_anomaly::<S>(reduced_angle(now, rate)).sin_cos();
-            let near = one / (one - e * cos); // a/r
-            let (n, minor) = (S::of(rate) * near, (one - e * e).sqrt());
-            let state = [cos - e, minor * sin, -(n * sin), n * minor * cos];
-            if let Some(place) = pulled(S::of(rate) * S::of(rate), state) {
-                return place;
+    /// Whether it has a [true anomaly](Self::true_anomaly) whose constants are doubles.
+    pub(super) fn is_conic(&self) -> bool {
+        !matches!(self.speed, Speed::Table(_)) && self.eccentricity < STRAIGHT
+    }
+
+    /// The true anomaly at the time `at`; `None` of a table.
+    pub(crate) fn true_anomaly<S: Real>(&self, at: Time) -> Option<TrueAnomaly<S>> {
+        let time = self.since_passage(at);
+        let (e, beyond) = (self.eccentricity, S::of(1.0) + S::of(self.eccentricity));
+        let (rate, along, latus_rectum) = match &self.speed {
+            Speed::Mean(rate) => {
+                let latus_rectum = S::from_dd(one_less(e)) * beyond;
+                (S::of(*rate), self.by_mean_motion::<S>(*rate, time), latus_rectum)
             }
-            ((cos - e) * near, minor * sin * near, near)
+            Speed::AtPassage { rate, period } => {
+                (S::from_dd(*rate), self.by_universal_variable::<S>(*rate, *period, time), beyond)
+            }
+            Speed::Table(_) => return None,
         };
-        let n = S::of(rate);
-        (S::of(3.0) * n * n * (near * near * near), [x, y])
+        let [x, y] = along.direction();
+        let turned = |v: Vec3<S>| self.plane.map_or(v, |plane| plane.map(S::from_dd).rotate(v));
+        Some(TrueAnomaly {
+            direction: turned(Vec3([x, y, S::of(0.0)])),
+            normal: turned(Vec3::unit(2)),
+            near: latus_rectum * along.near,
+            eccentric: (e != 0.0).then(|| [S::of(e) * x, S::of(e) * y]),
+            rate: rate / (latus_rectum * latus_rectum.sqrt()),
+        })
+    }
+
+    /// Of a circle or an ellipse, in semi-major axes.
+    fn by_mean_motion<S: Real>(&self, rate: f64, now: Dd) -> Along<S> {
+        let one = S::of(1.0);
+        if self.eccentricity == 0.0 {
+            let (sin, cos) = S::linear(reduced_angle(now, rate), rate).sin_cos();
+            return Along { place: [cos, sin], velocity: None, near: one };
+        }
+        let e = S::of(self.eccentricity);
+        let (sin, cos) = self.eccentric_anomaly::<S>(reduced_angle(now, rate)).sin_cos();
+        let near = one / (one - e * cos);
+        let (n, minor) = (S::of(rate) * near, (one - e * e).sqrt());
+        Along { place: [cos - e, minor * sin], velocity: Some([-(n * sin), n * minor * cos]), near }
     }
 
     /// The solution of Kepler's equation `E − e sin E = M`, M in [−π, π].
@@ -294,11 +368,11 @@ impl Orbit {
         x
     }
 
-    /// 3 GM/r³ and r̂ in the plane of the orbit, of any conic and without a singularity at the parabola.
+    /// Of any conic, in least distances, without a singularity at the parabola.
     ///
     /// With lengths in least distances q, times in √(q³/GM), α = 1 − e and Stumpff's functions cₖ of αχ²:
     /// `s = χ + e χ³ c₃`, `r = 1 + e χ² c₂`, `x = 1 − χ² c₂`, `y = √(1 + e) χ c₁`.
-    fn by_universal_variable<S: Real>(&self, rate: Dd, period: Option<Dd>, since: Dd) -> (S, [S; 2]) {
+    fn by_universal_variable<S: Real>(&self, rate: Dd, period: Option<Dd>, since: Dd) -> Along<S> {
         let (e, alpha) = (self.eccentricity, one_less(self.eccentricity));
         let since = period.map_or(since, |period| since - period * revolutions(since, period));
         let scaled = (rate * since).hi();
@@ -314,14 +388,12 @@ impl Orbit {
         let [c0, c1, c2, _] = stumpff(alpha * x * x, halvings);
         let (one, across) = (S::of(1.0), x * x * c2);
         let near = one / (one + e * across);
-        let rate = S::from_dd(rate);
-        let (speed, wide) = (rate * near, (one + e).sqrt());
-        let state = [one - across, wide * x * c1, -(speed * x * c1), speed * wide * c0];
-        if let Some(place) = pulled(rate * rate, state) {
-            return place;
+        let (speed, wide) = (S::from_dd(rate) * near, (one + e).sqrt());
+        Along {
+            place: [one - across, wide * x * c1],
+            velocity: Some([-(speed * x * c1), speed * wide * c0]),
+            near,
         }
-        let strength = S::of(3.0) * rate * rate * (near * near * near);
-        (strength, [(one - across) * near, wide * x * c1 * near])
     }
 }
 

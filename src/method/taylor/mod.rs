@@ -1,7 +1,9 @@
 //! `taylor`: Taylor's method: the power series of the motion in time, with steps as given or of its own.
 
 mod adaptive;
+mod gradient_series;
 mod motion_series;
+mod turned;
 
 pub use adaptive::AdaptiveTaylor;
 
@@ -20,7 +22,7 @@ const SOURCE: &str = "Jorba and Zou, Experimental Math. 14 (2005) 99";
 /// Taylor's method of a fixed order K, from 8 to 40.
 ///
 /// Φ_h: `m + Σ h^n m_n`, `q + Σ h^n q_n`, n from 1 to K, the coefficients by recurrences (Jorba and Zou, Experimental Math. 14
-/// (2005) 99). Free motion and linear potentials have recurrences of their own. The law of any other force is evaluated on
+/// (2005) 99). Free motion, linear potentials and the gravity gradient on a conic have recurrences of their own. The law of any other force is evaluated on
 /// [series](crate::num::Series) once a step and recorded; each of its products then takes K²/2 multiplications. It has to be
 /// analytic along the motion, and a closure in `f64` cannot be taken. Keeps nothing; |q| is brought back to 1 in every eighth step.
 ///

@@ -2,6 +2,8 @@
 
 use core::array::from_fn;
 
+use super::gradient_series::GradientSeries;
+use super::turned::Turned;
 use crate::body::{Field, Gyroscopic, Phase, Point, Rotor, Time, vertical};
 use crate::method::solve::length::length;
 use crate::num::{Dd, Real, Series, Tape};
@@ -12,8 +14,8 @@ use crate::rotation::{Quat, Vec3};
 /// With `m = Σ m_n`, `q = Σ q_n` and the unit u: `(n + 1) m_{n+1} = u (Σ m_k × I⁻¹m_{n−k} + τ_n)` and
 /// `2 (n + 1) q_{n+1} = u Σ q_k ∘ I⁻¹m_{n−k}`, k ≤ n. The first sum is taken as `D_i Σ (m_k)_j (m_{n−k})_l`,
 /// `D_i = 1/I_l − 1/I_j`, as its products cancel along the axis of a rod. Of a linear potential τ_n is `Γ_n × c`, with
-/// `(n + 1) Γ_{n+1} = u Σ Γ_k × I⁻¹m_{n−k}`; of all other forces it is the coefficient n of their laws, which are recorded once
-/// for all n. The unit is a power of two, so that it costs no rounding.
+/// `(n + 1) Γ_{n+1} = u Σ Γ_k × I⁻¹m_{n−k}`; a gravity gradient on a conic has [recurrences of its own](GradientSeries); of all other
+/// forces it is the coefficient n of their laws, which are recorded once for all n. The unit is a power of two, so that it costs no rounding.
 #[derive(Clone, Debug)]
 pub(super) struct MotionSeries<S, F> {
     order: usize,
@@ -26,28 +28,10 @@ pub(super) struct MotionSeries<S, F> {
     attitude: Vec<Spun<S>>,
     /// ω and Γ; empty without a linear potential.
     fall: Vec<[Turned<S>; 2]>,
-    /// The torque of all but the linear part by attitude and ω; `None` where that is all that acts.
+    /// The torque of a gravity gradient.
+    gradient: Option<GradientSeries<S>>,
+    /// The torque of all the rest by attitude and ω; `None` where nothing else acts.
     others: Option<Tape<S>>,
-}
-
-/// A vector by its next components and those after them: `a × b` is `a.next · b.after − a.after · b.next`.
-#[derive(Clone, Copy, Debug)]
-struct Turned<S> {
-    next: [S; 4],
-    after: [S; 4],
-}
-
-impl<S: Real> Turned<S> {
-    fn new(Vec3([x, y, z]): Vec3<S>) -> Self {
-        let zero = S::of(0.0);
-        Turned { next: [y, z, x, zero], after: [z, x, y, zero] }
-    }
-
-    #[inline]
-    fn components(&self) -> [S; 3] {
-        let [y, z, x, _] = self.next;
-        [x, y, z]
-    }
 }
 
 /// A quaternion q, and the three `½ q ∘ e_a/I_a` that ω turns it by.
@@ -83,7 +67,8 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
             momentum: Vec::with_capacity(order + 1),
             attitude: Vec::with_capacity(order + 1),
             fall: Vec::with_capacity(if field.linear_part().is_some() { order + 1 } else { 0 }),
-            others: F::HAS_REMAINDER.then(|| Tape::new(order)),
+            gradient: field.gradient().map(|(force, orbit)| GradientSeries::new(order, rotor, force, orbit)),
+            others: field.has_series().then(|| Tape::new(order)),
         }
     }
 
@@ -106,30 +91,37 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
         others.magnitude() / x.momentum_body.magnitude()
     }
 
-    /// Records the torque of all but the linear part about `x`.
+    /// Takes what acts beside the linear part about `x`.
     pub(super) fn record(&mut self, at: Time, x: &Point<S>) {
+        let (field, omega) = (&self.field, x.momentum_body.times(self.inverse_moments));
+        if let Some(gradient) = &mut self.gradient {
+            gradient.begin(at, x.attitude, omega);
+        }
         let Some(tape) = &mut self.others else { return };
-        let field = &self.field;
-        tape.record(
-            &arguments(x.attitude.components(), x.momentum_body.times(self.inverse_moments)),
-            |given| {
-                let &[w, x, y, z, a, b, c] = given else { return [Series::of(f64::NAN); 3] };
-                let torque = field.remainder_series(at, Quat::new(w, Vec3([x, y, z])), Vec3([a, b, c]));
-                torque.map_or([Series::of(f64::NAN); 3], |torque| torque.0)
-            },
-        );
+        tape.record(&arguments(x.attitude.components(), omega), |given| {
+            let &[w, x, y, z, a, b, c] = given else { return [Series::of(f64::NAN); 3] };
+            let torque = field.remainder_series(at, Quat::new(w, Vec3([x, y, z])), Vec3([a, b, c]));
+            torque.map_or([Series::of(f64::NAN); 3], |torque| torque.0)
+        });
     }
 
     /// The coefficient n of the torque of all but the linear part.
-    pub(super) fn torque(&self, at: Time, n: usize) -> Vec3<S> {
-        let Some(tape) = &self.others else { return Vec3::zero() };
-        let torque = Vec3([0, 1, 2].map(|axis| tape.result(axis, n)));
-        if !torque.magnitude().is_finite()
+    pub(super) fn torque(&mut self, at: Time, n: usize) -> Vec3<S> {
+        let mut torque = Vec3::zero();
+        if let Some(gradient) = &mut self.gradient {
+            torque = gradient.torque(n);
+            if !torque.magnitude().is_finite() && self.momentum.last().is_none_or(Turned::is_finite) {
+                self.field.not_finite(at, gradient.force());
+            }
+        }
+        let Some(tape) = &self.others else { return torque };
+        let others = Vec3([0, 1, 2].map(|axis| tape.result(axis, n)));
+        if !others.magnitude().is_finite()
             && let Some(part) = tape.culprit(n)
         {
             self.field.not_finite(at, part);
         }
-        torque
+        torque + others
     }
 
     /// Works out the series about `x`, which count `unit` seconds; what acts beside the linear part has been recorded there.
@@ -165,6 +157,11 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
             if let Some(up) = up {
                 self.fall.push([Turned::new(m.times(inverse)), Turned::new(up)]);
             }
+            if let Some(gradient) = &mut self.gradient
+                && n + 1 < self.order
+            {
+                gradient.push(share, m.times(inverse));
+            }
             if let Some(tape) = &mut self.others {
                 tape.push(&arguments(q, m.times(inverse)));
             }
@@ -190,8 +187,7 @@ impl<S: Real, F: Field<S>> MotionSeries<S, F> {
     fn fall_term(&self) -> Vec3<S> {
         let mut sum = [S::of(0.0); 4];
         for ([_, up], [omega, _]) in self.fall.iter().zip(self.fall.iter().rev()) {
-            let cross = |lane: usize| up.next[lane] * omega.after[lane] - up.after[lane] * omega.next[lane];
-            sum = from_fn(|lane| sum[lane] + cross(lane));
+            sum = up.add_cross(omega, sum);
         }
         let [x, y, z, _] = sum;
         Vec3([x, y, z])
