@@ -76,32 +76,27 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let body = Body::heavy(inertia, Vec3([0.0, 0.0, 1.0]).into()).map_err(unexpected)?;
     let mut table = Table::new("chaos", caption(span), columns());
     let mut report = Report::default();
-    for orbit in &ORBITS {
+    let start = |orbit: &Orbit| {
         let omega = Vec3([0, 1, 2].map(|k| orbit.momentum_body[k] / MOMENTS[k]));
-        let start = body.enter_omega(Quat::from_components(orbit.attitude), omega).map_err(unexpected)?;
-        // the true motion and its exponent are two pieces of work, side by side
-        let (mut motions, mut truths) = (Vec::new(), Vec::new());
-        for found in context.in_parallel(vec![true, false], |follows| {
-            if follows {
-                let times = evenly(held, held as u32);
-                let truth = Truth::from_point(&body, start.to_f64(), 0.0, &times, AGREEMENT);
-                truth.map(|truth| (Some(truth), None)).map_err(unexpected)
-            } else {
-                true_exponent(&body, start, span).map(|exponent| (None, Some(exponent)))
-            }
-        }) {
-            let (motion, exponent) = found?;
-            motions.extend(motion);
-            truths.extend(exponent);
-        }
-        let ([motion], [truth]) = (&motions[..], &truths[..]) else { continue };
+        body.enter_omega(Quat::from_components(orbit.attitude), omega).map_err(unexpected)
+    };
+    let starts = ORBITS.iter().map(start).collect::<Result<Vec<_>, Error>>()?;
+    // the exponents take longest, one on each core
+    let exponents = context.in_parallel(starts.clone(), |start| true_exponent(&body, start, span));
+    let times = evenly(held, held as u32);
+    let motions = context.in_parallel(starts.clone(), |start| {
+        Truth::from_point(&body, start.to_f64(), 0.0, &times, AGREEMENT).map_err(unexpected)
+    });
+    for (orbit, ((start, truth), motion)) in ORBITS.iter().zip(starts.into_iter().zip(exponents).zip(motions))
+    {
+        let (truth, motion) = (truth?, motion?);
         let mut parts = Vec::new();
         for name in METHODS {
             for power in 3..=finest {
                 parts.push((name, libm::exp2(-f64::from(power))));
             }
         }
-        let rows = context.in_parallel(parts, |(name, h)| of_run(&body, start, motion, (name, h), span));
+        let rows = context.in_parallel(parts, |(name, h)| of_run(&body, start, &motion, (name, h), span));
         let known = motion.known_until();
         let top = [Cell::Empty, Cell::Empty, truth.mean.into(), truth.half_width.into(), known.into()];
         let name: [Cell; 3] = row![orbit.name, "double-double", None::<f64>];

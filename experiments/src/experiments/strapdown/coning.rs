@@ -29,6 +29,13 @@ const OPTIMAL: [&[f64]; 4] = [
     &[250.0 / 504.0, 525.0 / 504.0, 650.0 / 504.0, 1375.0 / 504.0],
 ];
 
+/// How attitudes are found.
+#[derive(Clone, Copy)]
+enum Way {
+    Rule(Kind, Rule),
+    Coefficients(&'static [f64]),
+}
+
 /// Pure coning: `q(t) = (cos a/2, sin a/2 cos Ωt, sin a/2 sin Ωt, 0)` a sample every second.
 #[derive(Clone, Copy)]
 struct Coning {
@@ -66,6 +73,13 @@ impl Coning {
         let error = (attitude * self.attitude(t).conjugate()).logarithm();
         let half = Real::sin_cos(0.5 * self.amplitude).0;
         error[2].abs() / (2.0 * half * half * self.rate * t)
+    }
+
+    fn by(self, way: Way, samples: u32) -> Result<f64, Error> {
+        match way {
+            Way::Rule(kind, rule) => self.by_rule(kind, rule, samples),
+            Way::Coefficients(coefficients) => Ok(self.by_coefficients(coefficients, samples)),
+        }
     }
 
     fn by_rule(self, kind: Kind, rule: Rule, samples: u32) -> Result<f64, Error> {
@@ -128,16 +142,16 @@ pub(super) fn coning(context: &Context, report: &mut Report) -> Result<(), Error
             let ratio = f64::from(thousandths) / 1000.0;
             (ratio, Coning { amplitude, rate: TAU * ratio })
         });
-        let mut curves = Vec::new();
-        for (name, kind, rule) in &rules {
-            let points = motions.iter().map(|(x, motion)| Ok((*x, motion.by_rule(*kind, *rule, samples)?)));
-            curves.push((*name, rule.to_string(), points.collect::<Result<Vec<_>, Error>>()?));
-        }
-        for coefficients in OPTIMAL {
-            let points =
-                motions.iter().map(|(x, motion)| (*x, motion.by_coefficients(coefficients, samples)));
-            curves.push(("increment", format!("optimal:{}", coefficients.len() + 1), points.collect()));
-        }
+        let ways = rules.iter().map(|(name, kind, rule)| (*name, rule.to_string(), Way::Rule(*kind, *rule)));
+        let published = OPTIMAL.iter().map(|coefficients| {
+            ("increment", format!("optimal:{}", coefficients.len() + 1), Way::Coefficients(coefficients))
+        });
+        let ways: Vec<(&str, String, Way)> = ways.chain(published).collect();
+        let curves = context.in_parallel(ways, |(name, rule, way)| {
+            let points = motions.iter().map(|(x, motion)| Ok((*x, motion.by(way, samples)?)));
+            Ok((name, rule, points.collect::<Result<Vec<_>, Error>>()?))
+        });
+        let curves = curves.into_iter().collect::<Result<Vec<_>, Error>>()?;
         for (name, rule, points) in curves {
             points.iter().for_each(|(x, drift)| table.push(row![amplitude, name, &*rule, *x, *drift]));
             if amplitude == AMPLITUDES[1] && name == "increment" {
