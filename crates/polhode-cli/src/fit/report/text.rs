@@ -7,8 +7,8 @@ use polhode_pages::screen::wrapped;
 use super::super::attitudes::Read;
 use super::super::flights::Spans;
 use super::{
-    ENTRIES, MODELS, SURE, about_models, attitudes, correlation, digits, method, mirror, models, sizes,
-    systematic, two_places, unexplained, unused, with_error,
+    ENTRIES, MODELS, SURE, about_models, attitudes, correlation, digits, error_sizes, method, mirror, models,
+    sizes, systematic, two_places, unexplained, unused, with_error,
 };
 
 /// Columns that sentences are wrapped at.
@@ -162,6 +162,7 @@ fn of_models(e: &Estimate) -> Vec<String> {
     let (what, deviations) = about.split_once("; ").unwrap_or((&about, ""));
     let mut lines = vec![String::new(), format!("{what};"), format!("{deviations}:")];
     lines.extend(all().map(line));
+    lines.extend(error_sizes(e).chunks(3).map(|sizes| format!("  {}", sizes.join(", "))));
     lines
 }
 
