@@ -243,12 +243,15 @@ fn a_misaligned_sensor_explains_a_record_as_well_as_a_torque() {
             assert!(e.torque.model == TorqueModel::Drag && as_well.is_none(), "{k}: {:?}", e.warnings);
             assert!(e.reading_errors.iter().all(|one| one.share < 1e-3));
         } else {
-            // with or without a torque: the error explains far more than chance, and the deviations reach what it makes of the tensor
-            assert!(found.share > 0.5, "{k}: {}", found.share);
+            // with or without a torque: errors explain as much, each may stand for another, and the deviations reach what the likeliest makes of
+            // the tensor
+            let likeliest = e.reading_errors.iter().max_by(|a, b| a.share.total_cmp(&b.share)).unwrap();
+            assert!(e.reading_errors.iter().map(|one| one.share).sum::<f64>() > 0.05, "{k}: {likeliest}");
             let own = e.models.iter().find(|one| one.model == e.torque.model).unwrap();
             for axis in 0..3 {
-                let apart = (found.principal[axis] - own.principal[axis]).abs();
-                assert!(e.sigma_principal[axis] > 0.6 * apart, "{k}: {} {apart}", e.sigma_principal[axis]);
+                let apart = (likeliest.principal[axis] - own.principal[axis]).abs();
+                let reached = 0.6 * likeliest.share.sqrt() * apart;
+                assert!(e.sigma_principal[axis] > reached, "{k}: {} {reached}", e.sigma_principal[axis]);
             }
             covered += usize::from(chi2 < REGION);
             if e.torque.model != TorqueModel::None {

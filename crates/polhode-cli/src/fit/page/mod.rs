@@ -10,8 +10,9 @@ use polhode_pages::document::{Block, Form, Tone};
 use super::as_read::AsRead;
 use super::flights::Spans;
 use super::report::{
-    ENTRIES, Facts, MODELS, SURE, Segments, Sources, about_models, attitudes, component, digits, four_digits,
-    in_bursts, mirror, models, sensor_lines, sizes, systematic, two_places, unexplained, unused, with_error,
+    ENTRIES, Facts, MODELS, SURE, Segments, Sources, about_models, attitudes, component, digits, error_sizes,
+    four_digits, in_bursts, mirror, models, sensor_lines, sizes, systematic, two_places, unexplained, unused,
+    with_error,
 };
 
 /// The page of an estimate from the files `names`.
@@ -253,7 +254,16 @@ fn of_models(e: &Estimate) -> Vec<Block> {
     let about = about_models(e);
     let about = format!("{}:", capital(&about));
     let heads = MODELS.map(String::from).to_vec();
-    vec![Block::Heading("Models of the torque".into()), Block::Paragraph(about), Block::Table(heads, rows)]
+    let mut blocks = vec![
+        Block::Heading("Models of the torque".into()),
+        Block::Paragraph(about),
+        Block::Table(heads, rows),
+    ];
+    let sizes = error_sizes(e);
+    if !sizes.is_empty() {
+        blocks.push(Block::Paragraph(format!("Largest errors: {}.", sizes.join(", "))));
+    }
+    blocks
 }
 
 fn sensor(e: &Estimate) -> Vec<Block> {

@@ -295,7 +295,7 @@ pub(super) fn models(e: &Estimate) -> Vec<[String; 7]> {
         let ratio = |k: usize| concise(one.ratios[k], one.sigma_ratios[k]);
         let held_out = one.held_out.map_or("-".into(), |square| format!("{square:.3}"));
         let [gain, share] = [format!("{:.1}", one.gain), format!("{:.3}", one.share)];
-        [one.to_string(), gain, share, ratio(0), ratio(1), "-".into(), held_out]
+        [error_name(one), gain, share, ratio(0), ratio(1), "-".into(), held_out]
     };
     e.models.iter().map(row).chain(e.reading_errors.iter().map(of_sensor)).collect()
 }
@@ -309,6 +309,19 @@ pub(super) fn about_models(e: &Estimate) -> String {
         true => "the answer's deviations include their spread, in proportion to their shares",
         false => "the answer's deviations are those of the torque that was asked for",
     };
-    let sensor = if e.reading_errors.is_empty() { "" } else { ", and errors of the record without a torque" };
-    format!("models of the torque{sensor}, each with its own deviation in brackets; {deviations}")
+    let what = match e.reading_errors.is_empty() {
+        true => "models of the torque, each with its own deviation in brackets",
+        false => "models of the torque, or an error of the record instead, with their deviations",
+    };
+    format!("{what}; {deviations}")
+}
+
+/// The sizes of these errors, each with its name.
+pub(super) fn error_sizes(e: &Estimate) -> Vec<String> {
+    let size = |one: &ErrorFit| one.to_string().replace(&one.error.to_string(), &error_name(one));
+    e.reading_errors.iter().map(size).collect()
+}
+
+fn error_name(one: &ErrorFit) -> String {
+    one.error.to_string().replace('-', " ")
 }
