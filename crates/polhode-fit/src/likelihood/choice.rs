@@ -77,7 +77,8 @@ pub(crate) fn with_torque(model: TorqueModel, moved: impl Fn(bool) -> Option<Mov
 fn weighed(free: &Moved, slowed: Option<&Moved>) -> Vec<Weighed> {
     let Some(own) = covariance(&free.followed) else { return Vec::new() };
     let of = |model, gain, x, covariance: Form| {
-        Some(Weighed { model, error: None, gain, x, factor: covariance.cholesky()?.l(), held_out: None })
+        let factor = covariance.cholesky()?.l();
+        Some(Weighed { model, error: None, has_noise: false, gain, x, factor, held_out: None })
     };
     let x = free.followed.model.x;
     let linear = |model, found: &alternatives::Found| {

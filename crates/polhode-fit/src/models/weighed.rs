@@ -18,6 +18,8 @@ pub(crate) struct Weighed {
     pub(crate) model: TorqueModel,
     /// An error of the record, which takes the place of a torque, with its largest component: rad, a ratio, rad/s, s.
     pub(crate) error: Option<(ReadingError, f64)>,
+    /// Whether a level of torque noise is one of its unknowns.
+    pub(crate) has_noise: bool,
     /// Log-likelihood less that without a torque.
     pub(crate) gain: f64,
     pub(crate) x: Coordinates,
@@ -33,10 +35,10 @@ impl Weighed {
         self.model == model && self.error.is_none()
     }
 
-    /// Its log-likelihood less one for every coefficient.
+    /// Its log-likelihood less one for every coefficient; a level of torque noise is one, since it takes the place of a torque.
     pub(crate) fn score(&self) -> f64 {
         let count = self.error.map_or_else(|| torque_columns(self.model).len(), |(error, _)| error.count());
-        self.gain - count as f64
+        self.gain - (count + usize::from(self.has_noise)) as f64
     }
 }
 
@@ -104,7 +106,15 @@ mod tests {
 
     fn of(model: TorqueModel, gain: f64, x: f64, deviation: f64) -> Weighed {
         let x = Coordinates::new(x, 0.0, 0.0, 0.0, 0.0);
-        Weighed { model, error: None, gain, x, factor: Form::identity() * deviation, held_out: None }
+        Weighed {
+            model,
+            error: None,
+            has_noise: false,
+            gain,
+            x,
+            factor: Form::identity() * deviation,
+            held_out: None,
+        }
     }
 
     /// A coefficient that gains one weighs as much as none.
@@ -126,6 +136,14 @@ mod tests {
         let refuted =
             [of(TorqueModel::None, 0.0, 0.0, unit), of(TorqueModel::Drag, gain + 800.0, 1e-3, unit)];
         assert_eq!(spread(&refuted, TorqueModel::Drag), Form::zeros());
+    }
+
+    /// Torque noise that stands in for a torque weighs as much as one coefficient of it.
+    #[test]
+    fn torque_noise_is_a_coefficient() {
+        let noisy = Weighed { has_noise: true, ..of(TorqueModel::None, 1.0, 0.0, 1e-6) };
+        let both = [noisy, of(TorqueModel::Drag, 1.0, 0.0, 1e-6)];
+        assert_eq!(shares(&both, TorqueModel::None), [0.5, 0.5]);
     }
 
     /// A model under which the record tells nothing of the tensor adds no more than the tensors of all bodies differ.

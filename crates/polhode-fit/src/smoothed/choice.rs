@@ -25,7 +25,8 @@ pub(crate) fn choose(none: Found, torque: TorqueModel, noise: Noise) -> Option<C
     let weighed = |model, found: &Found| {
         let factor = found.covariance()?.cholesky()?.l();
         let gain = found.likelihood - floor;
-        Some(Weighed { model, error: None, gain, x: found.at.x, factor, held_out: None })
+        let has_noise = found.level.torque > 0.0;
+        Some(Weighed { model, error: None, has_noise, gain, x: found.at.x, factor, held_out: None })
     };
     let mut models: Vec<Weighed> = Vec::new();
     let without = none.at.x;

@@ -77,6 +77,11 @@ struct Rung {
 }
 
 impl Rung {
+    /// How many coefficients its torque has, its noise being one.
+    fn coefficients(&self) -> usize {
+        torque_columns(self.model).len() + usize::from(self.weak.has_torque_noise())
+    }
+
     /// What it makes of the record, `floor` being the likelihood without a torque.
     fn fitted(&self, floor: f64, variance: f64) -> Option<Weighed> {
         let gain = self.likelihood - floor;
@@ -86,6 +91,7 @@ impl Rung {
         is_fit.then_some(Weighed {
             model: self.model,
             error: None,
+            has_noise: self.weak.has_torque_noise(),
             gain,
             x: self.weak.x(),
             factor,
@@ -193,22 +199,17 @@ impl Ladder<'_> {
         // what is hopeless beside a drag is not tried in a long record
         let beside =
             if is_long(stretches) && drag.weak.has_settled() { drag.likelihood - floor } else { 0.0 };
-        let may_be_constant =
-            !none.weak.has_settled() || gain > HOPE * asked(TorqueModel::Constant).max(beside);
+        // torque noise takes the place of a torque, so that the equations with it promise little
+        let is_open = !none.weak.has_settled() || (none.weak.has_torque_noise() && !is_long(stretches));
+        let may_be_constant = is_open || gain > HOPE * asked(TorqueModel::Constant).max(beside);
         let constant = may_be_constant
             .then(|| self.descent(TorqueModel::Constant, radius, Some(Reached::of(&none.weak))));
         let without = none.weak.has_settled().then(|| none.weak.x());
         let mut fitted = vec![none.fitted(floor, variance)];
         let mut climb = |best: Rung, next: Rung| {
             fitted.push(next.fitted(floor, variance));
-            let coefficients = |rung: &Rung| torque_columns(rung.model).len();
-            let more = coefficients(&next).saturating_sub(coefficients(&best));
-            let asked = match best.model {
-                TorqueModel::None => asked(next.model),
-                // as many coefficients of another torque fit noise as well: one that was chosen gives way to what surely explains more
-                _ if more == 0 => FIRST,
-                _ => threshold(more),
-            };
+            // as many coefficients of another torque fit noise as well: one that was chosen gives way to what surely explains more
+            let asked = threshold(next.coefficients().saturating_sub(best.coefficients()));
             let surpasses = !best.weak.has_settled() || next.likelihood - best.likelihood > asked;
             if next.weak.has_settled() && surpasses { next } else { best }
         };
@@ -274,6 +275,7 @@ impl Ladder<'_> {
             Some(Weighed {
                 model: TorqueModel::None,
                 error: Some((error, largest * error.factor(units))),
+                has_noise: weak.has_torque_noise(),
                 gain: base + 0.5 * (own - stacked.squares) / variance,
                 x: best.x,
                 factor: stacked.root.try_inverse()? * deviation,
@@ -286,7 +288,8 @@ impl Ladder<'_> {
                 let stacked = equations.stacked();
                 let gain = base + 0.5 * (own - stacked.squares) / variance;
                 let factor = stacked.root.try_inverse()? * deviation;
-                Some(Weighed { model, error: None, gain, x: stacked.minimiser()?.x, factor, held_out: None })
+                let (x, has_noise) = (stacked.minimiser()?.x, weak.has_torque_noise());
+                Some(Weighed { model, error: None, has_noise, gain, x, factor, held_out: None })
             };
             Some(Weighed { held_out: equations.held_out(), ..fitted(model).or_else(linear)? })
         });
