@@ -355,7 +355,7 @@ fn summaries(free: &Free, information: &Information) -> Vec<SegmentSummary> {
         SegmentSummary {
             segment,
             samples: track.used.iter().filter(|used| **used).count(),
-            noise_sigma: information.levels.rate * free.read.unit,
+            noise_sigma: if free.read.has_rates { information.levels.rate * free.read.unit } else { 0.0 },
             torque_noise: 0.0,
             weight,
             without: others(),

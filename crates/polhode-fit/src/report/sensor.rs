@@ -46,6 +46,7 @@ struct Kind {
 pub(crate) const ROTOR: &str = "a wheel that turns in the body";
 const FIT_IT: &str = ", unless they are fitted too, with a prior";
 const LOOK: &str = "; look at the inertia, the axis and the speed of each wheel";
+
 /// All of them in a record whose unit of the rates is `rms`, rad/s.
 fn kinds(weak: &WeakEstimate, stretches: &[Stretch], rms: f64) -> Vec<Kind> {
     let of = |what, remedy, columns: Vec<Column>| {
