@@ -1,9 +1,9 @@
 //! Accurate long-time rotation of rigid bodies: free bodies, heavy tops, bodies under torques.
 //!
-//! * the exact motion of the free body and of Lagrange's top, at any time, to rounding;
+//! * the exact motion of the free body, of a body with wheels and of Lagrange's top, at any time, to rounding;
 //! * integrators on SO(3), with what each keeps stated and tested, watched in more digits than they integrate;
 //! * inertia tensors from moments, solids, meshes and parts, and what is wrong with one that no body has;
-//! * in the crate `polhode-fit`, inertia tensors from noisy records of angular velocity.
+//! * in the crate `polhode-fit`, inertia tensors from noisy records of angular velocity or attitude.
 //!
 //! ```
 //! use nalgebra::{UnitQuaternion, Vector3};
@@ -25,10 +25,12 @@
 //! | module | what lives there |
 //! |---|---|
 //! | [`num`] | numbers: `f64`, double-double, sums, elliptic functions |
+//! | [`units`] | units by name, and dates |
 //! | [`rotation`] | vectors, quaternions, distances on SO(3) |
 //! | [`inertia`] | inertia tensors from moments, solids, meshes and mass distributions; what is wrong with a tensor |
-//! | [`body`] | inertia with forces, states, the solver frame of kernels |
-//! | [`flow`] | exact flows and motions: the turn about an axis, the free body, the top |
+//! | [`record`] | measured angular velocities: samples in segments without gaps |
+//! | [`body`] | inertia with forces and wheels, states, the solver frame, in which methods compute |
+//! | [`flow`] | exact flows and motions: the turn about an axis, the free body, the body with wheels, the top |
 //! | [`events`] | when something happens: roots of functions of time and state |
 //! | [`strapdown`] | attitude from measured rates: rules for rates, increments and averages, with an error budget |
 //! | [`observe`] | invariants, largest errors over every step, secular drift |
@@ -39,8 +41,6 @@
 //! | [`advise`] | which method with which step, from short runs on the body itself |
 //! | [`audit`] | whether a trajectory from elsewhere is right, in which convention, and how large its error is |
 //! | [`catalogue`] | named bodies with their sources |
-//! | [`record`] | measured angular velocities: samples in segments without gaps |
-//! | [`units`] | units of times and rates by name; dates |
 //! | [`guide`] | a chapter for each kind of user; your own force, your own method; the exact motion |
 //!
 //! Each of those that hold code uses only those above it. The types that most programs need are also at the root:

@@ -1,4 +1,4 @@
-//! Bodies: inertia and forces, states of rotation, and the solver frame of kernels.
+//! Bodies: inertia with forces and wheels, states of rotation, and the solver frame, in which methods compute.
 
 #[allow(clippy::module_inception)]
 mod body;

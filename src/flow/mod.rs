@@ -1,4 +1,7 @@
-//! Exact flows: the atoms that splitting methods are composed of, and the references they are judged by.
+//! Exact motions at any time, and the exact flows that splitting methods are composed of.
+//!
+//! [`FreeMotion`], [`GyrostatMotion`] (with wheels) and [`LagrangeTop`] are motions from a start, in SI units; [`ExactMotion`] takes the
+//! one that a body and its forces have. The flows:
 //!
 //! | flow | of the energy | made from |
 //! |---|---|---|
@@ -8,8 +11,8 @@
 //! | [`FreeFlow`], [`FreeBody`] | ½ Σ m_k²/I_k | a rotor |
 //! | [`Kick`] | U(q) | a [`Field`](crate::body::Field) |
 //!
-//! Each moves a [`Point`]: principal axes, momenta divided by the scale of the rotor. [`KineticSplit`](crate::method::KineticSplit) makes a
-//! method of one's own of them.
+//! Each moves a [`Point`]: principal axes, momenta divided by the scale of the rotor. [`KineticSplit`](crate::method::KineticSplit) makes
+//! a method of your own out of them.
 
 mod casimir;
 mod derivative;

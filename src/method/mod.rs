@@ -1,5 +1,5 @@
 //! Methods: one step of size h is a map Φ_h that moves a point; its claims are data, and the [laws](crate::laws)
-//! execute every one of them, also those that say no.
+//! measure every one of them, also that a method does not keep what it says it does not.
 //!
 #![doc = include_str!("../../docs/methods.md")]
 

@@ -3,7 +3,8 @@
 //! * the two traits, [`Real`] for explicit kernels and [`Precise`] for what must compare or round;
 //! * [`Dd`]: double-double numbers, 106 bits, for constants, references and invariants;
 //! * [`trig`]: sine and cosine in `f64`, the same bits on every CPU;
-//! * [`Tape`], [`Series`]: truncated power series of what a law makes of them;
+//! * [`Series`], [`Tape`]: truncated power series, and the record of a function of them, which gives the coefficients of
+//!   its result one by one;
 //! * [`Compensated`]: compensated sums;
 //! * [`Expansion`]: exact sums and products of a few numbers;
 //! * [`elliptic`]: elliptic integrals and functions;

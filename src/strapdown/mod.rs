@@ -1,11 +1,11 @@
 //! Attitude from measured angular velocity: the integration that every gyroscope needs.
 //!
-//! Between the samples t_k and t_{k+1} the rates are a polynomial through 2m samples around, which is used in this middle
-//! interval alone, and the turn is the exponential of its Magnus series: one exponential a sample, of order 6 for instantaneous
-//! rates where rules that hold a rate or join two by a straight line have order 1 or 2.
+//! Between the samples t_k and t_{k+1} the rates are a polynomial through 2m samples, m on each side, which is used in this middle
+//! interval alone. The turn is the exponential of its Magnus series: one exponential a sample. For instantaneous rates the order is
+//! up to 6, where rules that hold a rate or join two by a straight line have order 1 or 2.
 //!
 //! * [`Strapdown`] takes samples one by one in constant memory, for `f64` and double-double;
-//! * [`Budgeted`] and [`attitudes`] put beside each attitude what it is worth, by cause; [`choose`] finds order and samples for a record;
+//! * [`Budgeted`] and [`attitudes`] put its error budget beside each attitude, by cause; [`choose`] finds order and samples for a record;
 //! * [`Rule`]: the Magnus rules by order and samples, and the rules that people run;
 //! * [`Flight`]: where the body is known and free, its exact motion through all the rates;
 //! * [`Kind`]: whether a reading is a rate, an increment or an average.
