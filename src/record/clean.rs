@@ -90,6 +90,7 @@ pub(super) fn cleaned(file: &str, rows: RawRows) -> Result<Cleaned, RecordError>
             lines: own.iter().map(|(line, _)| *line).collect(),
             inputs: None,
             rate_unit,
+            breaks: Vec::new(),
         }
     });
     Ok(Cleaned { segments: segments.collect(), findings })

@@ -103,7 +103,8 @@ impl Record {
         Record { unused: self.unused.clone(), ..Record::default() }
     }
 
-    /// The spikes and bursts of all segments, and the record without them, where there are any.
+    /// The spikes and bursts of all segments, and the record without them, where there are any; where eight samples and more in a row are left
+    /// out, the segment has several [stretches](Segment::stretches).
     #[doc(hidden)]
     pub fn without_spikes(&self) -> Option<(Vec<Spike>, Record)> {
         let each: Vec<Vec<Outlier>> = self.segments.iter().map(outliers).collect();

@@ -30,7 +30,12 @@ pub struct Segment {
     pub(super) inputs: Option<Inputs>,
     /// The unit of the rates in the source, where that or a setting names one.
     pub(super) rate_unit: Option<RateUnit>,
+    /// Samples before which so many were left out that the two sides are apart as by a gap; ascending.
+    pub(super) breaks: Vec<usize>,
 }
+
+/// Samples left out in a row that part a segment: the interval is then longer than that of a gap.
+const BREAK: usize = 8;
 
 /// Wheel momenta (N m s) and torques (N m) at the times of a segment, sensor axes; a list is empty where there are none.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -85,6 +90,7 @@ impl Segment {
             lines,
             inputs: None,
             rate_unit: Some(RateUnit::default()),
+            breaks: Vec::new(),
         })
     }
 
@@ -157,6 +163,8 @@ impl Segment {
     pub(super) fn without(&self, left_out: &[usize]) -> Segment {
         let mut left = left_out.iter().copied().peekable();
         let kept: Vec<usize> = (0..self.times.len()).filter(|i| left.next_if_eq(i).is_none()).collect();
+        let is_break = |pair: &[usize]| pair[1] - pair[0] > BREAK || self.parted(pair[0], pair[1]);
+        let breaks = kept.windows(2).enumerate().filter(|(_, pair)| is_break(pair)).map(|(k, _)| k + 1);
         Segment {
             source: self.source.clone(),
             times: kept.iter().map(|&i| self.times[i]).collect(),
@@ -164,6 +172,7 @@ impl Segment {
             lines: kept.iter().map(|&i| self.lines[i]).collect(),
             inputs: self.inputs.as_ref().map(|inputs| inputs.of(kept.iter().copied())),
             rate_unit: self.rate_unit,
+            breaks: breaks.collect(),
         }
     }
 
@@ -174,9 +183,27 @@ impl Segment {
             times: self.times[range.clone()].to_vec(),
             rates: self.rates[range.clone()].to_vec(),
             lines: self.lines[range.clone()].to_vec(),
-            inputs: self.inputs.as_ref().map(|inputs| inputs.of(range)),
+            inputs: self.inputs.as_ref().map(|inputs| inputs.of(range.clone())),
             rate_unit: self.rate_unit,
+            breaks: self
+                .breaks
+                .iter()
+                .filter(|k| range.start < **k && **k < range.end)
+                .map(|k| k - range.start)
+                .collect(),
         }
+    }
+
+    /// Whether a break lies behind sample `a`, and not behind `b`, a later one.
+    fn parted(&self, a: usize, b: usize) -> bool {
+        self.breaks.iter().any(|k| a < *k && *k <= b)
+    }
+
+    /// The samples between which none are left out in runs as long as a gap.
+    #[doc(hidden)]
+    pub fn stretches(&self) -> impl Iterator<Item = Range<usize>> {
+        let ends = self.breaks.iter().copied().chain([self.times.len()]);
+        ends.scan(0, |start, end| Some(core::mem::replace(start, end)..end))
     }
 
     /// The line of each sample in its source, from 1; of a segment that was not read from a text its place.

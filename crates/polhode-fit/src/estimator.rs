@@ -199,7 +199,7 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
     };
     let Supported { identifiability, prior } = *supported;
     let scatter = scatter(&chosen.weak, variance * chosen.weak.misfit(variance).max(1.0));
-    let per_segment = summaries(&chosen.weak, record, variance, rms);
+    let per_segment = summaries(&chosen.weak, &stretches, variance, rms);
     // with wheels alone the exact motion tells more than the weak equations
     let is_exact = input.is_some() && completed.is_none() && scatter.is_none() && settings.radius.is_none();
     let likeliest = if is_exact { with_wheels(&stretches, &chosen.weak, variance) } else { None };

@@ -1,7 +1,7 @@
 //! The inertia of a wheel from records of a body that is known.
 
 use polhode::inertia::Inertia;
-use polhode::record::{Record, Segment};
+use polhode::record::Record;
 
 use crate::columns::column::Column;
 use crate::columns::input::Input;
@@ -100,7 +100,7 @@ pub fn calibrate_wheel(
     let per_unit = trace / scale;
     let nuisances = (1..columns.len())
         .map(|k| Nuisance::new(&columns[k], found.values[k], found.sigmas[k] * deviation, rms));
-    let used = |k: usize| rest.segments.get(k).map_or(0, |s: &Segment| s.times().len());
+    let used = || found.levels.iter().map(|(k, _)| &stretches[*k]);
     Ok(WheelCalibration {
         inertia: found.values[0] * per_unit,
         sigma: found.sigmas[0] * deviation * per_unit,
@@ -109,7 +109,7 @@ pub fn calibrate_wheel(
         noise_sigma: variance.sqrt() * rms,
         chi2_per_dof: found.misfit,
         dof: found.dof,
-        samples: found.levels.iter().map(|(k, _)| used(*k)).sum(),
-        segments: found.levels.len(),
+        samples: used().map(|stretch| stretch.times.len()).sum(),
+        segments: used().collect::<Vec<_>>().chunk_by(|a, b| a.segment == b.segment).count(),
     })
 }

@@ -106,9 +106,9 @@ impl Column {
         self.effect().class()
     }
 
-    /// Whether both are the same unknown, whatever their priors and stretches are.
+    /// Whether both are the same unknown, whatever their priors are.
     pub(crate) fn is_alike(&self, other: &Column) -> bool {
-        self.kind == other.kind
+        self.kind == other.kind && self.segment == other.segment
     }
 
     pub(crate) fn acts_on(&self, stretch: &Stretch) -> bool {

@@ -122,12 +122,9 @@ mod tests {
     #[test]
     fn steps_of_a_walk_follow_each_other_on_every_axis() {
         let times = vec![2.0, 4.0, 6.0, 8.0, 10.0];
-        let stretch = |index, times: Vec<f64>| Stretch {
-            rates: vec![Vector3::zeros(); times.len()],
-            weights: vec![1.0; times.len()],
-            inputs: None,
-            times,
-            index,
+        let stretch = |index, times: Vec<f64>| {
+            let rates = vec![Vector3::zeros(); times.len()];
+            Stretch { index, ..Stretch::new(times, rates) }
         };
         let all = [stretch(0, times.clone()), stretch(1, vec![0.0, SHORTEST])];
         let columns = walk_columns(&all, 3.0, 4);

@@ -33,8 +33,7 @@ impl Squared {
         columns: &[Column],
     ) -> Option<Self> {
         let quadratic = Column::new(Quadratic, None);
-        let asked = |column: &Column| column.is_alike(&quadratic) && column.acts_on(stretch);
-        if !columns.iter().any(asked) {
+        if !columns.iter().any(|column| column.is_alike(&quadratic)) {
             return None;
         }
         let none = || vec![Vector3::zeros(); tests.count];

@@ -110,7 +110,8 @@ pub fn flights(record: &Record, settings: &Settings) -> Result<Flights, FitError
     let agreed = consensus(&all, speed, variance)
         .map_err(|NoConsensus { least }| none(least.map(|least| MOST_TORQUE * least.sqrt())))?;
     let mut list: Vec<Flight> = Vec::new();
-    for (segment, (tests, free)) in all.iter().zip(&agreed.free).enumerate() {
+    for (stretch, (tests, free)) in stretches.iter().zip(all.iter().zip(&agreed.free)) {
+        let segment = stretch.segment;
         let extents = runs(free).into_iter().filter_map(|run| extent(tests, run, &agreed.x, speed, variance));
         for found in extents {
             let span = [
@@ -119,7 +120,7 @@ pub fn flights(record: &Record, settings: &Settings) -> Result<Flights, FitError
             ];
             // neighbours that a short blow parts share no sample
             let last = list.last().filter(|last| last.segment == segment).map(|last| last.end);
-            list.extend(flight(&record.segments[segment], segment, span, &found, last));
+            list.extend(flight(&record.segments[segment], stretch, rms, span, &found, last));
         }
     }
     if list.is_empty() { Err(none(None)) } else { Ok(Flights { list, whole: false }) }
@@ -143,25 +144,31 @@ fn whole(record: &Record) -> Flights {
     Flights { list: each.collect(), whole: true }
 }
 
-/// The samples of a segment in a span of seconds from its start, those up to `last` left out; `None` where there are
+/// The samples of a segment in a span of seconds from the start of a stretch of it, those up to `last` left out; `None` where there are
 /// too few for a fit.
-fn flight(segment: &Segment, k: usize, span: [f64; 2], found: &Extent, last: Option<f64>) -> Option<Flight> {
-    let times = segment.times();
-    let origin = *times.first()?;
+fn flight(
+    segment: &Segment,
+    stretch: &Stretch,
+    rms: f64,
+    span: [f64; 2],
+    found: &Extent,
+    last: Option<f64>,
+) -> Option<Flight> {
+    let (times, origin) = (segment.times(), stretch.start);
     let low = match found.before {
-        FlightLimit::Edge => 0,
+        FlightLimit::Edge => times.partition_point(|t| *t < origin),
         _ => times.partition_point(|t| t - origin < span[0]),
     };
     let low = low.max(last.map_or(0, |last| times.partition_point(|t| *t <= last)));
     let high = match found.after {
-        FlightLimit::Edge => times.len(),
+        FlightLimit::Edge => times.partition_point(|t| (t - origin) * rms <= stretch.duration()),
         _ => times.partition_point(|t| t - origin <= span[1]),
     };
     let own = times.get(low..high)?;
     let (start, end) = (*own.first()?, *own.last()?);
     let enough = own.len() >= 2 * SAMPLES_PER_TEST as usize;
     enough.then(|| Flight {
-        segment: k,
+        segment: stretch.segment,
         start,
         end,
         samples: own.len(),

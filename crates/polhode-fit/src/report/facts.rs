@@ -136,8 +136,8 @@ impl Facts<'_> {
             chi2_per_dof: self.misfit + pull * pull * self.misfit.max(1.0) / weak.dof().max(1) as f64,
             pull,
             dof: weak.dof(),
-            samples: residuals.iter().map(|r| self.record.segments[r.segment].times().len()).sum(),
-            segments: residuals.len(),
+            samples: weak.parts.iter().map(|part| self.stretches[part.stretch].times.len()).sum(),
+            segments: residuals.chunk_by(|a, b| a.segment == b.segment).count(),
             radius: Some(weak.radius / self.rms),
             method: if self.is_exact { Method::ExactMotionWithWheels } else { Method::WeakForm },
             attitudes: None,
@@ -293,12 +293,12 @@ impl Facts<'_> {
         let deviation = self.variance.sqrt();
         let each = self.chosen.weak.parts.iter();
         each.map(|part| {
-            let start = self.record.segments[part.stretch].times().first().copied().unwrap_or(0.0);
+            let Stretch { segment, start, .. } = self.stretches[part.stretch];
             let e = part.residuals(at);
             let values: Vec<[f64; 3]> =
                 e.chunks_exact(3).map(|r| [r[0], r[1], r[2]].map(|v| v / deviation)).collect();
             Residuals {
-                segment: part.stretch,
+                segment,
                 times: part.centres().iter().map(|c| start + c / self.rms).collect(),
                 mean_square: values.iter().flatten().map(|v| v * v).sum::<f64>() / e.len() as f64,
                 values,

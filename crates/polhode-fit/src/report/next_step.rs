@@ -211,8 +211,8 @@ impl Estimate {
         }
         let longest = self.residuals.iter().max_by_key(|of| of.times.len())?;
         let seconds = longest.times.last()? - longest.times.first()?;
-        let own = self.per_segment.iter().find(|of| of.segment == longest.segment)?.samples;
-        let count = own.clamp(2, PLANNED);
+        let own = self.per_segment.iter().filter(|of| of.segment == longest.segment);
+        let count = own.map(|of| of.samples).max()?.clamp(2, PLANNED);
         let times: Vec<f64> = (0..count).map(|i| seconds * i as f64 / (count - 1) as f64).collect();
         let body = Inertia::from_tensor(self.shape.tensor()).ok()?;
         let axis = |k: usize| self.axes * Vector3::ith(k, 1.0);

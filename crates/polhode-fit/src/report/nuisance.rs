@@ -87,7 +87,7 @@ pub struct Agreement {
     pub dof: usize,
 }
 
-/// One segment of a record in a fit.
+/// One segment of a record in a fit, or a part of one between bursts of eight samples and more that were left out.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub struct SegmentSummary {

@@ -1,11 +1,10 @@
 //! The segments of a record, each with its noise and what it contributes.
 
-use polhode::record::Record;
-
 use crate::physical::coordinates::{Coordinates, Form};
 use crate::report::answer::ratios_of;
 use crate::report::nuisance::{SegmentSummary, WithoutSegment};
 use crate::signal::covariance::Shape;
+use crate::signal::stretch::Stretch;
 use crate::solve::stacked::Stacked;
 use crate::solve::weak_estimate::{Part, WeakEstimate};
 
@@ -35,8 +34,8 @@ impl Summary {
     }
 }
 
-/// One summary for each stretch of a weak estimate; `variance` is that of the noise in units of the rate `rms`.
-pub(crate) fn summaries(weak: &WeakEstimate, record: &Record, variance: f64, rms: f64) -> Vec<Summary> {
+/// One summary for each of the stretches of a weak estimate; `variance` is that of the noise in units of the rate `rms`.
+pub(crate) fn summaries(weak: &WeakEstimate, stretches: &[Stretch], variance: f64, rms: f64) -> Vec<Summary> {
     let Some(stacked) = &weak.stacked else { return Vec::new() };
     let total = stacked.information();
     let stack = |parts: &[&Part]| {
@@ -55,14 +54,14 @@ pub(crate) fn summaries(weak: &WeakEstimate, record: &Record, variance: f64, rms
             let shift = (stacked.root * (x - weak.x())).norm() / variance.sqrt();
             Some(Others { x, covariance: kept.cholesky()?.inverse(), shift })
         };
-        let levels = part.levels;
+        let (levels, stretch) = (part.levels, &stretches[part.stretch]);
         let share = match levels.shape {
             Shape::Moments => 1.0,
             Shape::Alike => 1.0 / 9.0,
         };
         let own = SegmentSummary {
-            segment: part.stretch,
-            samples: record.segments[part.stretch].times().len(),
+            segment: stretch.segment,
+            samples: stretch.times.len(),
             noise_sigma: (levels.white * variance).sqrt() * rms,
             torque_noise: levels.torque * share * variance * rms * rms * rms,
             weight,

@@ -138,9 +138,7 @@ impl Tried<'_> {
     fn with(&self, columns: &[Column]) -> Option<(Unknowns, f64)> {
         let Tried { weak, errors, whitened, variance } = *self;
         columns.first()?;
-        let place = |column: &Column| {
-            errors.iter().position(|own| own.is_alike(column) && own.segment == column.segment)
-        };
+        let place = |column: &Column| errors.iter().position(|own| own.is_alike(column));
         let first = columns.iter().map(place).collect::<Option<Vec<usize>>>()?;
         let width = errors.len() + weak.columns.len() + 6;
         let kept: Vec<usize> = first.iter().copied().chain(errors.len()..width).collect();

@@ -41,23 +41,20 @@ pub(crate) fn normalised(record: &Record) -> Result<Normalised, FitError> {
     });
     let input = Some(sizes.fold(0.0, f64::max)).filter(|size| size.is_normal());
     let segments = record.segments.iter().enumerate();
-    let stretches = segments.map(|(index, s)| {
-        let start = s.times().first().copied().unwrap_or(0.0);
-        let times = s.times().iter().map(|t| (t - start) * rms).collect();
-        let mut stretch = Stretch::new(times, s.rates().iter().map(|w| w / rms).collect());
-        stretch.index = index;
-        stretch.inputs = input.map(|unit| {
-            let scaled = |list: Option<&Vec<Vector3<f64>>>, factor: f64| {
-                list.filter(|list| !list.is_empty()).map_or(vec![Vector3::zeros(); s.times().len()], |list| {
-                    list.iter().map(|v| v / factor).collect()
+    let parts = segments.flat_map(|(segment, s)| s.stretches().map(move |range| (segment, s, range)));
+    let stretches = parts.enumerate().map(|(index, (segment, s, range))| {
+        let start = s.times().get(range.start).copied().unwrap_or(0.0);
+        let times = s.times()[range.clone()].iter().map(|t| (t - start) * rms).collect();
+        let rates = s.rates()[range.clone()].iter().map(|w| w / rms).collect();
+        let inputs = input.map(|unit| {
+            let scaled = |list: Option<&[Vector3<f64>]>, factor: f64| {
+                list.map_or(vec![Vector3::zeros(); range.len()], |list| {
+                    list[range.clone()].iter().map(|v| v / factor).collect()
                 })
             };
-            KnownInputs {
-                wheel: scaled(s.inputs().map(|i| &i.wheel), unit * rms),
-                torque: scaled(s.inputs().map(|i| &i.torque), unit * rms * rms),
-            }
+            KnownInputs { wheel: scaled(s.wheel(), unit * rms), torque: scaled(s.torque(), unit * rms * rms) }
         });
-        stretch
+        Stretch { inputs, index, segment, start, ..Stretch::new(times, rates) }
     });
     Ok(Normalised { stretches: stretches.collect(), rms, input })
 }

@@ -12,8 +12,12 @@ pub(crate) struct Stretch {
     pub(crate) weights: Vec<f64>,
     /// What acts on the body and is known.
     pub(crate) inputs: Option<KnownInputs>,
-    /// Its number in the record.
+    /// Its number among the stretches of the record.
     pub(crate) index: usize,
+    /// The segment of the record that it is or is a part of.
+    pub(crate) segment: usize,
+    /// Time of its first sample in the record, s.
+    pub(crate) start: f64,
 }
 
 /// Wheel momenta and torques at the times of a stretch, in units of the unit rate and its square.
@@ -26,7 +30,7 @@ pub(crate) struct KnownInputs {
 impl Stretch {
     pub(crate) fn new(times: Vec<f64>, rates: Vec<Vector3<f64>>) -> Self {
         let weights = quadrature::weights(&times);
-        Stretch { times, rates, weights, inputs: None, index: 0 }
+        Stretch { times, rates, weights, inputs: None, index: 0, segment: 0, start: 0.0 }
     }
 
     pub(crate) fn duration(&self) -> f64 {
@@ -40,6 +44,8 @@ impl Stretch {
         Stretch {
             inputs: inputs.map(|i| KnownInputs { wheel: head(&i.wheel), torque: head(&i.torque) }),
             index: self.index,
+            segment: self.segment,
+            start: self.start,
             ..Stretch::new(self.times[..count].to_vec(), head(&self.rates))
         }
     }

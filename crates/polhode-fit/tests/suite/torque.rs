@@ -390,6 +390,27 @@ fn bursts_are_left_out_and_counted() {
     assert!(trials.covered >= 12);
 }
 
+/// A sum over samples across the hole would be off by more than the noise: seen as errors of the sensor.
+#[test]
+fn a_long_burst_parts_its_segment() {
+    let mut random = Random::new(43);
+    let times = sampled(20, 60);
+    for _ in 0..8 {
+        let j = turned([1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6], &random_rotation(&mut random));
+        let omega = random.normal_vector().normalize();
+        let mut rates: Vec<_> =
+            free(&j, omega, &times).iter().map(|w| w + random.normal_vector() * 1e-2).collect();
+        let first = 200 + random.below(800) as usize;
+        rates[first..first + 12].iter_mut().for_each(|rate| *rate += Vector3::new(0.5, -0.5, 0.5));
+        let e = fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap();
+        assert_eq!((e.spikes.len(), e.segments, e.per_segment.len(), e.samples), (12, 1, 2, 1189));
+        assert_eq!(e.per_segment.iter().map(|part| part.samples).sum::<usize>(), 1189);
+        assert!(e.per_segment.iter().all(|part| part.segment == 0));
+        let is_suspect = |w: &Warning| !matches!(w, Warning::Bursts { samples: 12, bursts: 1, .. });
+        assert!(!e.warnings.iter().any(is_suspect), "{:?}", e.warnings);
+    }
+}
+
 /// A wheel whose momentum is known gives the tensor its size.
 #[test]
 fn a_wheel_gives_the_absolute_tensor() {
