@@ -122,6 +122,8 @@ struct Place {
     name: String,
     /// The unit of times that name none.
     unit: Option<TimeUnit>,
+    /// Whether numbers are Julian dates.
+    is_julian: bool,
     delimiter: Delimiter,
     /// Columns of the first line; with one, a date may hold a blank.
     columns: usize,
@@ -173,15 +175,24 @@ impl Times<'_> {
             if found.is_none() {
                 let asked = (self.column.wanted.as_deref(), self.column.asked.column);
                 let own = place(text, asked.0, asked.1);
-                let named = header.as_deref().filter(|_| own.is_err());
-                let named = named.and_then(|header| place(header, asked.0, asked.1).ok());
                 let delimiter = Delimiter::of(text);
                 let columns = delimiter.names(text).len();
-                let (place, is_header) =
-                    match named.filter(|(place, is_header)| *is_header && place.columns == columns) {
-                        Some((place, _)) => (Place { delimiter, ..place }, false),
-                        None => own.map_err(|(rule, remedy)| lines.refused(rule).with_remedy(&remedy))?,
-                    };
+                // of a row that tells its place itself a comment above it may still tell the unit
+                let says_more = |named: &Place| match &own {
+                    Err(_) => true,
+                    Ok((_, is_header)) => !is_header && (named.unit.is_some() || named.is_julian),
+                };
+                let named = header.as_deref().map(|header| place(header, asked.0, asked.1));
+                let named = match named {
+                    Some(Ok((place, true))) => {
+                        Some(place).filter(|place| place.columns == columns && says_more(place))
+                    }
+                    _ => None,
+                };
+                let (place, is_header) = match named {
+                    Some(place) => (Place { delimiter, ..place }, false),
+                    None => own.map_err(|(rule, remedy)| lines.refused(rule).with_remedy(&remedy))?,
+                };
                 *found = Some(place);
                 if is_header {
                     continue;
@@ -215,6 +226,10 @@ impl Place {
             return Err(refused(Rule::Missing));
         }
         let number = self.delimiter.number(cell);
+        if self.is_julian && epoch.is_none() {
+            let rule = Rule::Other("is a Julian date".into());
+            return Err(refused(rule).with_remedy("give the date of t = 0 by --epoch"));
+        }
         match (self.unit, number.parse::<f64>()) {
             (Some(unit), Ok(value)) if value.is_finite() => Ok(unit.seconds(value)),
             _ => seconds(&number, epoch).map_err(|error| match error.split_once("; ") {
@@ -238,9 +253,11 @@ impl Place {
 fn place(line: &str, wanted: Option<&str>, flag: &str) -> Result<(Place, bool), (Rule, String)> {
     let delimiter = Delimiter::of(line);
     if wanted.is_none() && is_moment(line).is_ok() {
-        return Ok((Place { column: 0, name: "t".into(), unit: None, delimiter, columns: 1 }, false));
+        let column =
+            Place { column: 0, name: "t".into(), unit: None, is_julian: false, delimiter, columns: 1 };
+        return Ok((column, false));
     }
-    let cells = delimiter.names(line);
+    let cells = cells(line, delimiter);
     let is_header = cells.iter().all(|cell| is_moment(cell).is_err());
     let names: Vec<Name> = cells.iter().map(|cell| Name::of(cell)).collect();
     let by_number =
@@ -254,7 +271,9 @@ fn place(line: &str, wanted: Option<&str>, flag: &str) -> Result<(Place, bool), 
             let named = cells.iter().position(|name| is_header && name == text);
             (named.or_else(|| by_number(text)), format!("name one of them by {flag}"))
         }
-        None if cells.len() == 1 => (Some(0), String::new()),
+        None if cells.len() == 1 && (!is_header || unit_of(&names[0]).is_some() || is_julian(&names[0])) => {
+            (Some(0), String::new())
+        }
         None => (ranked().filter(|_| is_header), format!("name the column of times by {flag}")),
     };
     let Some(column) = found else {
@@ -269,15 +288,47 @@ fn place(line: &str, wanted: Option<&str>, flag: &str) -> Result<(Place, bool), 
         ));
     }
     let name = if is_header { cells[column].clone() } else { "t".into() };
+    if is_header && names[column].letters.starts_with("mjd") {
+        let rule = format!("column '{}' has modified Julian dates", visible(&name));
+        return Err((Rule::Other(rule), "write Julian dates, which are 2400000.5 more".into()));
+    }
+    let is_julian = is_header && is_julian(&names[column]);
     let unit = match names[column].time_unit() {
+        _ if is_julian => None,
         Some((text, None)) if is_header && names[column].time_rank().is_some() => {
             let rule = Rule::Other(format!("column '{}' is in '{}'", visible(&name), visible(text)));
             return Err((rule, "known units of time: s, ms, us, ns, min, h, d".into()));
         }
         Some((_, unit)) if is_header => unit,
+        _ if is_header => unit_of(&names[column]),
         _ => None,
     };
-    Ok((Place { column, name, unit, delimiter, columns: cells.len() }, is_header))
+    Ok((Place { column, name, unit, is_julian, delimiter, columns: cells.len() }, is_header))
+}
+
+/// Whether a name is that of Julian dates: as they are, or of the barycentre or the Sun.
+fn is_julian(name: &Name) -> bool {
+    ["jd", "bjd", "hjd", "julian"].iter().any(|stem| name.letters.starts_with(stem))
+}
+
+/// The unit of time that is the whole name of a column.
+fn unit_of(name: &Name) -> Option<TimeUnit> {
+    TimeUnit::named(&name.letters).filter(|_| name.unit.is_none())
+}
+
+/// The cells of a line; between blanks a unit in brackets is that of the name before it.
+fn cells(line: &str, delimiter: Delimiter) -> Vec<String> {
+    let mut cells: Vec<String> = Vec::new();
+    for cell in delimiter.names(line) {
+        match cells.last_mut() {
+            Some(name) if delimiter == Delimiter::Blanks && cell.starts_with(['(', '[']) => {
+                name.push(' ');
+                name.push_str(&cell);
+            }
+            _ => cells.push(cell),
+        }
+    }
+    cells
 }
 
 #[cfg(test)]
@@ -307,6 +358,12 @@ mod tests {
         assert_eq!(read("a;b\n1;2\n3;4\n", Some("b"), None), Ok(vec![2.0, 4.0]));
         assert_eq!(read("1 2\n3 4\n", Some("2"), None), Ok(vec![2.0, 4.0]));
         assert_eq!(read("2000-01-01 12:00:01\n", None, Some("2000-01-01T12:00")), Ok(vec![1.0]));
+        for header in ["t (min)", "t(min)", "t [min]", "# t (min)", "# min", "minutes"] {
+            assert_eq!(read(&format!("{header}\n1\n2\n"), None, None), Ok(vec![60.0, 120.0]), "{header}");
+        }
+        assert_eq!(read("t (min) flux\n1 7\n2 7\n", None, None), Ok(vec![60.0, 120.0]));
+        assert_eq!(read("# flux t (h)\n7 1\n", Some("2"), None), Ok(vec![3600.0]));
+        assert_eq!(read("# of 2024\n1\n", None, None), Ok(vec![1.0]));
     }
 
     #[test]
@@ -330,6 +387,23 @@ mod tests {
                 ", line 1: no column for 'c'; the header has 'a', 'b'; name one of them",
             ),
             ("# nothing\n\n", None, ": no rows; write one time a line"),
+            (
+                "time_min\n1\n",
+                None,
+                ", line 1: no column for time; the header has 'time_min'; name the column",
+            ),
+            ("t (ticks)\n1\n", None, ", line 1: column 't (ticks)' is in 'ticks'; known units of time"),
+            (
+                "jd\n2451545.5\n",
+                None,
+                ", line 2, column 1 (jd): '2451545.5': is a Julian date; give the date",
+            ),
+            (
+                "# JD_UTC\n2451545.5\n",
+                None,
+                ", line 2, column 1 (JD_UTC): '2451545.5': is a Julian date; give",
+            ),
+            ("MJD,mag\n59000.5,9\n", Some("MJD"), ", line 1: column 'MJD' has modified Julian dates; write"),
             ("t,b\n1,2\n2025-01-01,5\n", None, ", line 3, column 1 (t): '2025-01-01' is a date; give"),
         ] {
             let error = read(text, wanted, None).unwrap_err();

@@ -56,7 +56,7 @@ fn times_that_cannot_be_used_are_refused_by_file_line_and_column() {
     let scratch = Scratch::new("times-refused");
     let of = |name: &str, text: &str| format!("--times {}", scratch.file(name, text));
     refused(&with(&of("a", "1\n2\nx\n")), &["a, line 3, column 1 (t): 'x': is not a number"]);
-    refused(&with(&of("b", "jd,mag\n1,\n,2\n")), &["b, line 3, column 1 (jd): a number is missing"]);
+    refused(&with(&of("b", "t,mag\n1,\n,2\n")), &["b, line 3, column 1 (t): a number is missing"]);
     refused(
         &with(&of("c", "when,mag\n1,2\n")),
         &["c, line 1: no column for time", "'when', 'mag'", "--times-column"],

@@ -58,7 +58,9 @@ impl Name {
             Some((place, ending))
         });
         let (place, ending) = found.or_else(|| is_delsys().then_some((last, 0)))?;
-        Some((self.time_unit().is_none_or(|unit| unit.1.is_none()), place, ending))
+        // of dates in days a double holds some ten microseconds
+        let is_coarse = ["jd", "mjd"].contains(&self.letters.as_str());
+        Some((is_coarse || self.time_unit().is_none_or(|unit| unit.1.is_none()), place, ending))
     }
 
     /// Whether it counts samples.
@@ -152,11 +154,13 @@ mod tests {
             ("TimeStartup(ns)", Some(TimeUnit::Nanoseconds)),
             ("millis", Some(TimeUnit::Milliseconds)),
             ("X[s]", Some(TimeUnit::Seconds)),
+            ("jd", Some(TimeUnit::Days)),
         ] {
             let name = Name::of(text);
             assert!(name.time_rank().is_some(), "{text}");
             assert_eq!(name.time_unit().and_then(|(_, unit)| unit), unit, "{text}");
         }
         assert!(Name::of("temperature").time_rank().is_none() && Name::of("Counter").is_counter());
+        assert!(Name::of("t").time_rank() < Name::of("jd").time_rank());
     }
 }

@@ -131,7 +131,7 @@ pub(crate) fn frame(stem: &str) -> Option<Frame> {
 const TIMES: &str = "secondselapsed:s gyrotimestampsincereboot:s motiontimestampsincereboot:s timestampsincereboot:s \
     timesincestartinms:ms t time zeit temps tiempo tempo tijd czas čas tid zaman χρόνος время 时间 時間 시간 simtime timestamp \
     elapsed elapsedtime timestartup timestampunix millis:ms micros:us sampletimefine timestampsample fieldheaderstamp epoc \
-    epoch jd loggingtime datetime date timestep";
+    epoch jd:d mjd:d loggingtime datetime date timestep";
 
 /// Names of counters, which count samples and are times only with their rate.
 const COUNTERS: &str = "packetcounter counter packetnumber packetcount samplecounter samplenumber frame";

@@ -76,16 +76,29 @@ pub(super) fn column(folder: &Path, file: &str, name: &str) -> Vec<f64> {
 }
 
 #[test]
+fn a_step_of_more_than_a_radian_and_ratios_under_a_torque_are_told() {
+    let scratch = Scratch::new("ensemble-coarse");
+    let spec = STEPPED.replace("step = 0.01", "step = 2.5").replace("members = 200", "members = 2");
+    scratch.file("coarse.toml", spec);
+    let answer = polhode(&words("ensemble coarse.toml --out coarse"), &scratch.0);
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    assert!(answer.err.contains("[run]: step: '2.5': turns the body by 2.8 rad per step"), "{}", answer.err);
+    let ratios = "propagate --body apophis --torque-body 0,0,1e-3 --method rk4 --step 100 --until 1000";
+    let answer = polhode(&words(ratios), &scratch.0);
+    assert!(answer.err.contains("apophis: the catalogue has ratios of moments"), "{}", answer.err);
+}
+
+#[test]
 fn times_come_from_a_file_as_from_a_list() {
     let scratch = Scratch::new("ensemble-times");
     std::fs::create_dir(scratch.0.join("specs")).unwrap();
-    scratch.file("specs/epochs.csv", "night,jd,mag\n1,0.0,9\n1,1.0,9\n2,100.0,8\n");
+    scratch.file("specs/epochs.csv", "night,t,mag\n1,0.0,9\n1,1.0,9\n2,100.0,8\n");
     scratch.file("list.toml", EXACT);
     done("ensemble list.toml --out list", &scratch);
     let list = contents(&scratch.0.join("list"));
     // without the key of the column it is found by its name, and the file beside the specification
     for (name, keys) in [
-        ("named", "times_file = \"epochs.csv\"\ntimes_column = \"jd\""),
+        ("named", "times_file = \"epochs.csv\"\ntimes_column = \"t\""),
         ("numbered", "times_file = \"epochs.csv\"\ntimes_column = 2"),
         ("found", "times_file = \"epochs.csv\""),
     ] {
