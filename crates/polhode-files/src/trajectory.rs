@@ -19,6 +19,8 @@ pub struct FoundTrajectory {
     pub bodies: Vec<(Option<String>, Trajectory)>,
     /// What names and layout claim of the convention.
     pub claims: Convention,
+    /// Whether the columns of the Euler angles say by their names what they turn about: roll about x, pitch about y, yaw about z, in this order.
+    pub angles_are_named: bool,
     /// Whether the times are counts of steps, of a length that the file does not tell.
     pub counts_steps: bool,
     /// Lines before the header that begin with #, without that.
@@ -117,6 +119,7 @@ fn found(mut table: Table) -> Result<FoundTrajectory, TableError> {
     Ok(FoundTrajectory {
         bodies: bodies.collect(),
         claims,
+        angles_are_named: angles_are_named(&table),
         counts_steps: table.counts_steps(),
         unread: table.header.unread().map(|name| visible(name).into_owned()).collect(),
         comments: table.comments,
@@ -155,6 +158,15 @@ fn claims(table: &Table) -> Result<Convention, TableError> {
         claims.attitude = Some(Direction::BodyToSpace);
     }
     Ok(claims)
+}
+
+/// Whether the columns of the Euler angles are roll, pitch and yaw.
+fn angles_are_named(table: &Table) -> bool {
+    let attitude = table.header.bodies.first().and_then(|body| body.attitude.as_ref());
+    attitude.filter(|group| group.quantity == Quantity::Angles).is_some_and(|group| {
+        let mut names = group.places.iter().map(|place| &table.header.names[*place].letters);
+        ["roll", "pitch", "yaw"].iter().all(|about| names.next().is_some_and(|name| name.starts_with(about)))
+    })
 }
 
 /// The rows of one body so far.

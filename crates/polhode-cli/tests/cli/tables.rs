@@ -263,7 +263,7 @@ fn layouts_that_are_no_plain_rows_are_read_alike_too() {
             [
                 "7 and 8: right wxyz body-to-space body rad/s",
                 "refused: has 2 bodies",
-                "refused: line 5, column 2 (id): '8.0': of another body than the row before, '7.0', at the same time",
+                "refused: line 4, column 2 (id): '7.0': rows of '8.0' lie between rows of this body",
                 "402 times",
             ],
         ),

@@ -25,9 +25,8 @@ impl Inputs {
         remarks: &mut Vec<String>,
     ) -> Result<Self, TableError> {
         let momenta = triple(table, 'h', "N m s", |unit| MomentumUnit::named(unit?).map(|_| ()))?;
-        let torques = triple(table, 't', "N m", |unit| {
-            unit.is_none_or(|unit| TorqueUnit::named(unit).is_some()).then_some(())
-        })?;
+        // without a unit they may as well be a translation
+        let torques = triple(table, 't', "N m", |unit| TorqueUnit::named(unit?).map(|_| ()))?;
         let column = speed_column(table);
         let speed = match (wheel, column) {
             (None, Some(place)) => {

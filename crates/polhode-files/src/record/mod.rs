@@ -40,7 +40,7 @@ pub struct FoundRecord {
 /// that are not needed. Columns are found by the names that phones, loggers, flight controllers and ROS give them, or as
 /// [`ReadOptions::columns`] says; four columns of numbers need no header. Of several times the one whose name has a unit is read;
 /// dates, and counts since 1970, are taken from the first row on. Columns `hx, hy, hz` (N m s) are the momentum of wheels,
-/// `tx, ty, tz` (N m) a torque.
+/// `tx (N m), ty (N m), tz (N m)` a torque.
 ///
 /// Rows that cannot be read are [left out](FoundRecord::skipped), up to a [share](ReadOptions::most_skipped).
 ///

@@ -63,7 +63,7 @@ impl<'t> Rows<'t> {
             let row = row(&mut self.table, self.rates, self.units, self.scale, self.before);
             match row.and_then(|row| self.inputs.push(&self.table).map(|()| row)) {
                 Ok(row) => {
-                    self.owner.check(&self.table, self.before == Some(row[0]))?;
+                    self.owner.check(&self.table)?;
                     let [time, x, y, z] = row;
                     let [x, y, z] = self.axes.map_or([x, y, z], |axes| axes.apply([x, y, z]));
                     self.before = Some(time);
@@ -131,22 +131,26 @@ impl<'t> Rows<'t> {
 #[derive(Default)]
 struct Owner {
     name: String,
-    /// The first name that shared its time with another.
-    partner: Option<String>,
+    /// The first name of all, and the last that was another than the present one.
+    earlier: [String; 2],
 }
 
 impl Owner {
-    /// Refuses rows of several bodies; a counter, which may go on within one tick of a clock, shows no name again.
-    fn check(&mut self, table: &Table, at_the_same_time: bool) -> Result<(), TableError> {
+    /// Refuses rows of several bodies, whose names come again; those of a counter do not.
+    fn check(&mut self, table: &Table) -> Result<(), TableError> {
         let Some(id) = table.header.id else { return Ok(()) };
         let name = table.cell(id);
-        if at_the_same_time && name != self.name {
-            if self.partner.as_deref() == Some(name) {
-                let before = visible(&self.name);
-                let rule = format!("of another body than the row before, '{before}', at the same time");
-                return Err(table.refused_cell(id, Rule::Other(rule)).with_remedy("name a file of one body"));
-            }
-            self.partner.get_or_insert_with(|| name.into());
+        if name == self.name {
+            return Ok(());
+        }
+        if !name.is_empty() && self.earlier.iter().any(|earlier| earlier == name) {
+            let rule = format!("rows of '{}' lie between rows of this body", visible(&self.name));
+            return Err(table.refused_cell(id, Rule::Other(rule)).with_remedy("name a file of one body"));
+        }
+        let [first, last] = &mut self.earlier;
+        core::mem::swap(last, &mut self.name);
+        if first.is_empty() {
+            first.push_str(last);
         }
         self.name.clear();
         self.name.push_str(name);

@@ -408,7 +408,15 @@ impl<'t> Table<'t> {
             }
         }
         self.header.rate_unit = reading.rate_unit.or(implied);
-        Ok(())
+        let bare = self.header.bodies.iter().filter_map(|body| body.rates.as_ref()).find_map(|rates| {
+            let bare = rates.units.iter().position(Option::is_none)?;
+            (self.header.rate_unit.is_none() && rates.units.iter().any(Option::is_some))
+                .then(|| rates.places[bare])
+        });
+        bare.map_or(Ok(()), |place| {
+            let rule = Rule::Other("names no unit, and another rate of the body does".into());
+            Err(self.refused_column(place, rule).with_remedy("write the unit of each, or give --rate-unit"))
+        })
     }
 
     /// In which units it was read; `steps` are the times between samples that were kept, s.

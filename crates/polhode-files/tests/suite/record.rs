@@ -365,7 +365,7 @@ fn rows_of_several_bodies_are_no_record_and_a_counter_is_no_body() {
             .map_or_else(|error| error.to_string(), |_| String::new())
     };
     let bodies = told([7, 8, 7, 8, 7, 8]);
-    let rule = "a, line 5, column 2 (id): '8': of another body than the row before, '7', at the same time";
+    let rule = "a, line 4, column 2 (id): '7': rows of '8' lie between rows of this body";
     assert_eq!(bodies, format!("{rule}; name a file of one body"));
     assert!(!told([1, 2, 3, 4, 5, 6]).contains("another body"));
 }
