@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use polhode::body::{Body, Clock, Point};
 use polhode::method::AnyMethod;
 use polhode::run::{Run, Watch};
-use polhode_files::error::{Error, tell};
+use polhode_files::error::{Error, tell, warn};
 use polhode_files::text::short;
 
 /// A run of one body has fewer steps than this: a day or more of the fastest method.
@@ -66,6 +66,17 @@ pub(crate) fn check_all(place: &str, members: u64, steps: f64) -> Result<(), Err
         )
     };
     Err(Error::input(place, "", &rule, remedy))
+}
+
+/// Warns where a step of `step` s, set by a flag or key, turns a body of this `speed`, rad/s, so far that no method is accurate.
+pub(crate) fn warn_coarse(place: &str, step: f64, speed: f64) {
+    if step * speed > 1.0 {
+        warn(&format!(
+            "{place}: '{}': turns the body by {:.1} rad per step; above 1 rad no stepping method is accurate; take a smaller step",
+            short(step),
+            step * speed
+        ));
+    }
 }
 
 /// Says how long a run of `steps` takes, where that is long.

@@ -6,7 +6,7 @@ use nalgebra::UnitQuaternion;
 use polhode::audit::{Direction, QuaternionOrder, Reading, Trajectory};
 use polhode::strapdown::Estimate;
 use polhode_files::ReadOptions;
-use polhode_files::error::{Error, tell};
+use polhode_files::error::{Error, tell, warn};
 use polhode_files::text::{rounded, visible};
 use polhode_files::trajectory::read;
 
@@ -20,7 +20,8 @@ pub(super) struct Reference {
     reading: Reading,
     /// Whether a time of the record is one of its own.
     has_met: bool,
-    /// Rows that were compared, and those whose error is inside the 95 % of its budget.
+    /// Attitudes that were to be compared, those of them at a time of the reference, and of these the ones whose error is inside the 95 % of its budget.
+    asked: usize,
     compared: usize,
     inside: usize,
     largest: f64,
@@ -42,7 +43,17 @@ impl Reference {
         let mut reading = Reading::default();
         reading.quaternion = Some(found.claims.quaternion.unwrap_or(QuaternionOrder::ScalarFirst));
         reading.attitude = Some(found.claims.attitude.unwrap_or(Direction::BodyToSpace));
-        Ok(Self { name, rows, reading, has_met: false, compared: 0, inside: 0, largest: 0.0, at: 0.0 })
+        Ok(Self {
+            name,
+            rows,
+            reading,
+            has_met: false,
+            asked: 0,
+            compared: 0,
+            inside: 0,
+            largest: 0.0,
+            at: 0.0,
+        })
     }
 
     /// Its attitude at the time `t`, s.
@@ -57,6 +68,7 @@ impl Reference {
 
     /// The angle between an estimate and its attitude at the same time, rad; `None` where it has none.
     pub(super) fn error(&mut self, estimate: &Estimate) -> Option<f64> {
+        self.asked += 1;
         let truth = self.at(estimate.time)?;
         let angle = estimate.error(truth).norm();
         self.compared += 1;
@@ -94,5 +106,18 @@ impl Reference {
                 self.inside
             ),
         );
+        let rows = self.asked.min(self.rows.times.len());
+        if 2 * self.compared < rows {
+            warn(&format!(
+                "{}: only {} of {rows} rows are at a time of both; look at the unit of its times",
+                self.name, self.compared
+            ));
+        }
+        if 2 * self.inside < self.compared {
+            warn(&format!(
+                "{}: most errors are beyond their 95 %; look at the units of the readings, the convention of the reference and the deviations that are given",
+                self.name
+            ));
+        }
     }
 }

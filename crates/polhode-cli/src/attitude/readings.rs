@@ -5,7 +5,7 @@ use std::path::Path;
 use clap::{Args, ValueEnum};
 use polhode::record::{Segment, Spike};
 use polhode::strapdown::{Kind, StrapdownError};
-use polhode_files::error::{Error, warn};
+use polhode_files::error::{Error, tell, warn};
 use polhode_files::record::{Part, Parts};
 use polhode_files::text::{rounded, short};
 
@@ -48,6 +48,8 @@ pub(super) struct Readings {
     pub(super) kind: Kind,
     /// Whether averages are possible too.
     pub(super) is_assumed: bool,
+    /// Whether nothing names the unit of the readings.
+    is_unit_open: bool,
     restarts: bool,
     segments: usize,
     /// Time of the last sample, s.
@@ -96,6 +98,7 @@ impl KindArguments {
                 return Err(Error::input("--kind", "", &rule, remedy));
             }
         };
+        let is_unit_open = parts.rate_unit().is_none() && !parts.are_increments();
         let parts = if whole { parts.whole() } else { parts };
         // an increment that stands out is none that may be left out, as its turn would be lost
         let parts = if kind == Kind::Rate { parts.without_spikes() } else { parts };
@@ -103,6 +106,7 @@ impl KindArguments {
             parts,
             kind,
             is_assumed: self.kind.is_none() && kind == Kind::Rate,
+            is_unit_open,
             restarts: self.restart,
             segments: 0,
             last: None,
@@ -183,6 +187,19 @@ impl Readings {
         let Found { samples, merged, repeated, saturated, new_readings_rate, spikes, in_bursts, .. } =
             self.found;
         tell_skipped(self.parts.skipped(), samples);
+        if self.is_unit_open {
+            let (read, other) = match self.kind {
+                Kind::Increment => ("rad", "name the unit of an angle in the header"),
+                _ => ("rad/s", "name it in the header or by --rate-unit"),
+            };
+            let name = self.name();
+            tell(
+                "note",
+                &format!(
+                    "{name}: no unit of the readings is named, they are read as {read}; if it is another, {other}"
+                ),
+            );
+        }
         if merged > 0 {
             warn(&format!("{merged} rows have the time of the row before: their rates are averaged"));
         }

@@ -4,6 +4,8 @@ use clap::{Args, ValueEnum};
 use polhode::audit::{Convention, Frame};
 use polhode::units::RateUnit;
 use polhode_files::ReadOptions;
+use polhode_files::error::Error;
+use polhode_files::trajectory::FoundTrajectory;
 
 use crate::flags::attitude::AttitudeArguments;
 use crate::flags::table::{TableArguments, rate_unit};
@@ -48,6 +50,16 @@ impl ReadingArguments {
     /// How the table is read.
     pub(super) fn table(&self) -> ReadOptions {
         self.table.reading(self.rate_unit)
+    }
+
+    /// Whether a flag names columns.
+    pub(super) fn names_columns(&self) -> bool {
+        self.table.names_columns()
+    }
+
+    /// The Euler angles in the order of the sequence that is stated.
+    pub(super) fn order(&self, found: &mut FoundTrajectory) -> Result<(), Error> {
+        self.attitude.order(found)
     }
 
     /// What is claimed: by flags first, then by the names of the file.

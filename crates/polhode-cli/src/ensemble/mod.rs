@@ -245,6 +245,7 @@ impl Ensemble {
     fn check_room(&self, spec: &Spec, shard: Shard) -> Result<(), Error> {
         let range = shard.range(spec.members);
         cost::check_all(&spec.place, range.end - range.start, spec.steps())?;
+        spec.warn_coarse();
         let (members, threads) = (range.end - range.start, threads_of(self.threads));
         let times = spec.plan.times.len() as u64;
         let is_observed = !spec.observer.is_empty();

@@ -12,6 +12,7 @@ use polhode_files::text::visible;
 use polhode_files::trajectory::{self, FoundTrajectory};
 use polhode_fit::Poses;
 
+use super::frames::{Left, about_space};
 use crate::flags::attitude::AttitudeArguments;
 use crate::flags::record::RecordArguments;
 
@@ -109,6 +110,32 @@ impl PoseArguments {
         Chosen::Rates { beside }
     }
 
+    /// Refuses files whose rates, by the attitudes beside them, are those about the axes of space.
+    pub(super) fn check_frames(&self, beside: &[PathBuf], reading: &RecordArguments) -> Result<(), Error> {
+        for path in beside {
+            let name = visible(&path.display().to_string()).into_owned();
+            let mut found = trajectory::read(path, &reading.table())?;
+            self.convention.order(&mut found)?;
+            let claims = self.convention.claims(found.claims);
+            let [(_, rows)] = &found.bodies[..] else { continue };
+            // attitudes whose convention nobody knows say nothing
+            let Ok(convention) = convention(rows, &claims, &name) else { continue };
+            let attitudes =
+                (0..rows.times.len()).map(|row| convention.attitude(rows, row).map(UnitQuaternion::from));
+            let Some(attitudes) = attitudes.collect::<Option<Vec<_>>>() else { continue };
+            let rates = rates(rows, &convention, &claims, reading, &name)?;
+            if let Some(Left { body, space }) = about_space(&rows.times, &attitudes, &rates, claims.attitude)
+            {
+                let rule = format!(
+                    "its rates are those about the axes of space: the turns of its attitudes differ from them by {space:.1e} rad/s there, and by {body:.1e} rad/s about the axes of the body"
+                );
+                let remedy = "turn them into axes of the body, fit --from attitudes, or state --from rates to fit them as they are";
+                return Err(Error::input(&name, "", &rule, remedy));
+            }
+        }
+        Ok(())
+    }
+
     /// The attitudes of all files and windows.
     pub(super) fn read(&self, data: &[PathBuf], reading: &RecordArguments) -> Result<Read, Error> {
         reading.check_windows(data.len())?;
@@ -118,13 +145,10 @@ impl PoseArguments {
         let mut all: Option<Read> = None;
         for (k, path) in data.iter().enumerate() {
             let mut one = self.of_file(path, reading)?;
-            match reading.windows(k) {
-                None => continue,
-                Some(windows) if windows.is_empty() => {}
-                Some(windows) => {
-                    let cut = one.poses.windows(&windows);
-                    one.poses = cut.map_err(|error| Error::Input(format!("{}: {error}", path.display())))?;
-                }
+            let windows = reading.windows(k);
+            if !windows.is_empty() {
+                let cut = one.poses.windows(&windows);
+                one.poses = cut.map_err(|error| Error::Input(format!("{}: {error}", path.display())))?;
             }
             all = Some(match all {
                 None => one,
@@ -137,7 +161,8 @@ impl PoseArguments {
     fn of_file(&self, path: &Path, reading: &RecordArguments) -> Result<Read, Error> {
         let name = visible(&path.display().to_string()).into_owned();
         let refused = |rule: &str, remedy: &str| Error::input(&name, "", rule, remedy);
-        let found = trajectory::read(path, &reading.table())?;
+        let mut found = trajectory::read(path, &reading.table())?;
+        self.convention.order(&mut found)?;
         let remark = found.remark();
         let claims = self.convention.claims(found.claims);
         let FoundTrajectory { mut bodies, counts_steps, mut read_as, .. } = found;

@@ -6,6 +6,7 @@ mod attitudes;
 mod calibrate;
 mod carrier;
 mod flights;
+mod frames;
 mod inputs;
 mod page;
 mod plot;
@@ -52,9 +53,10 @@ const EXAMPLES: &str = "Examples:
 /// The axes of the sensor are taken as right-handed, which rates cannot tell: the report names the tensor of left-handed axes, too, and
 /// --axes undoes a mirrored axis. Attitudes (quaternions, matrices, Euler angles, modified Rodrigues parameters) are fitted where a file
 /// has no rates, or where --from says so, by maximum likelihood on the exact motion. Free rotation tells the tensor up to a factor, and
-/// its trace is then set to 1. It is absolute with one of --trace, --momentum, --twice-energy, --moment and --prior-inertia, or with columns
-/// `hx (N m s)`, hy, hz (momentum of wheels, the unit in the header) or tx, ty, tz (known torque, N m). Exit code 1: the record does not
-/// determine the tensor; the report says what it does determine, and which record would tell more.
+/// its trace is then set to 1. It is absolute with one of --trace, --momentum, --twice-energy, --moment and --prior-inertia, on a --carrier, or
+/// with columns that name their units: `hx (N m s)`, hy, hz (momentum of wheels), `tx (N m)`, ty, tz (known torque), or `wheel (rad/s)` (speed,
+/// with --wheel). Exit code 1: the record does not determine the tensor; the report says what it does determine, and which record would tell
+/// more.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Fit {
@@ -139,9 +141,12 @@ impl Fit {
             return carrier::run(&self.carrier, &self.data, &self.reading, wheel, &settings, wanted);
         }
         let chosen = self.poses.chosen(&self.data, &self.reading);
-        let read = match chosen {
+        let read = match &chosen {
             Chosen::Attitudes { .. } => Some(self.attitudes()?),
-            Chosen::Rates { .. } => None,
+            Chosen::Rates { beside } => {
+                self.poses.check_frames(beside, &self.reading)?;
+                None
+            }
         };
         let (mut record, files) = match &read {
             Some(read) => (read.poses.rates(), read.read_as.clone()),

@@ -1,9 +1,11 @@
 //! In which convention attitudes are written: `audit` and `fit`.
 
 use clap::{Args, ValueEnum};
-use polhode::audit::{Angles, Convention, Direction, Turns};
+use polhode::audit::{Angles, Attitudes, Convention, Direction, Turns};
 use polhode::rotation::EulerSequence;
 use polhode::units::AngleUnit;
+use polhode_files::error::Error;
+use polhode_files::trajectory::FoundTrajectory;
 
 use super::table::Order;
 
@@ -19,7 +21,8 @@ pub(crate) struct AttitudeArguments {
     /// Product of the quaternions for which --attitude is meant [default: hamilton]
     #[arg(long, value_enum, requires = "attitude", help_heading = "Reading")]
     product: Option<Product>,
-    /// Sequence of the Euler angles in the order of their columns, about turned axes, as zyx; about fixed axes with :extrinsic
+    /// Sequence of the Euler angles in the order of their columns, about turned axes, as zyx; about fixed axes with :extrinsic. Columns roll, pitch and
+    /// yaw are taken by the letters x, y and z
     #[arg(long, value_name = "SEQUENCE[:extrinsic]", value_parser = sequence, help_heading = "Reading")]
     euler: Option<(EulerSequence, Turns)>,
     /// Unit of the Euler angles: rad or deg
@@ -57,6 +60,27 @@ fn sequence(text: &str) -> Result<(EulerSequence, Turns), String> {
 }
 
 impl AttitudeArguments {
+    /// Angles in columns of the names roll, pitch and yaw, in the order of the sequence that is stated.
+    pub(crate) fn order(&self, found: &mut FoundTrajectory) -> Result<(), Error> {
+        let (true, Some((sequence, _))) = (found.angles_are_named, self.euler) else { return Ok(()) };
+        let axes = sequence.axes();
+        if axes[0] == axes[2] {
+            let rule = "turns about one axis twice, and roll, pitch and yaw are angles about x, y and z";
+            return Err(Error::input(
+                "--euler",
+                &sequence.to_string(),
+                rule,
+                "state a sequence of the three, as zyx, or name the columns by --columns",
+            ));
+        }
+        for (_, rows) in &mut found.bodies {
+            if let Some(Attitudes::Angles(angles)) = &mut rows.attitude {
+                angles.iter_mut().for_each(|row| *row = axes.map(|axis| row[axis]));
+            }
+        }
+        Ok(())
+    }
+
     /// What is claimed: by flags first, then by the names of the file.
     pub(crate) fn claims(&self, of_file: Convention) -> Convention {
         let mut claims = of_file;

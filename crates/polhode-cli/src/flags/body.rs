@@ -6,7 +6,7 @@ use polhode::body::{Body, Orbit, WheelAtStart};
 use polhode::catalogue::{self, Orientation};
 use polhode::inertia::Inertia;
 use polhode_files::bodies;
-use polhode_files::error::{Error, tell};
+use polhode_files::error::{Error, tell, warn};
 use polhode_files::numbers::{list, numbers};
 use polhode_files::text::visible;
 
@@ -51,6 +51,15 @@ pub(crate) struct Described {
 impl Described {
     pub(crate) fn alone(inertia: Inertia) -> Self {
         Self { inertia, weight_moment: [0.0; 3], wheels: Vec::new(), orbit: None }
+    }
+}
+
+/// Warns where a torque, drag, a weight or a wheel acts on a body of which the catalogue has no moments but their ratios.
+pub(crate) fn warn_of_ratios(name: &str) {
+    if catalogue::body(name).is_some_and(|body| body.unit == "ratio") {
+        warn(&format!(
+            "{name}: the catalogue has ratios of moments, which are taken as kg m^2: a torque, drag, weight or wheel acts as on a body of that size"
+        ));
     }
 }
 

@@ -188,6 +188,14 @@ impl ForceArguments {
             || self.drag.is_some()
     }
 
+    /// Whether a flag names a torque in N m or what makes one.
+    pub(crate) fn is_sized(&self) -> bool {
+        self.weight_moment.is_some()
+            || self.torque_body.is_some()
+            || self.torque_space.is_some()
+            || self.drag.is_some()
+    }
+
     /// Whether a flag names an orbit.
     pub(crate) fn has_orbit(&self) -> bool {
         self.gravity_gradient.is_some() || self.orbit.is_some() || self.orbit_table.is_some()

@@ -28,7 +28,7 @@ pub(crate) struct RecordArguments {
     /// are reversed, is x, y and z; -y in x,-y,z undoes a mirrored axis. Applied before everything else [default: x,y,z]
     #[arg(long, value_name = "x,-y,z", value_parser = SignedAxes::parse, allow_hyphen_values = true, help_heading = "Reading")]
     axes: Option<SignedAxes>,
-    /// Use only samples from t0 to t1, s; repeatable. With N: of the N-th file only [default: all samples if the body
+    /// Use only samples from t0 to t1, s; repeatable. With N: of the N-th file only, and then every file needs one [default: all samples if the body
     /// rotates freely from the first to the last, else the flights, which are found and listed]
     #[arg(long, value_name = "[N:]t0,t1", value_parser = window, allow_hyphen_values = true, help_heading = "Reading")]
     window: Vec<Window>,
@@ -79,11 +79,9 @@ impl RecordArguments {
         self.axes
     }
 
-    /// The windows of the file with number `k`, from 0; `None` where other files alone have some, an empty list where none has.
-    pub(crate) fn windows(&self, k: usize) -> Option<Vec<(f64, f64)>> {
-        let own = self.window.iter().filter(|w| w.file.is_none_or(|n| n == k + 1));
-        let own: Vec<(f64, f64)> = own.map(|w| w.span).collect();
-        (self.window.is_empty() || !own.is_empty()).then_some(own)
+    /// The windows of the file with number `k`, from 0; none where no file has any.
+    pub(crate) fn windows(&self, k: usize) -> Vec<(f64, f64)> {
+        self.window.iter().filter(|w| w.file.is_none_or(|n| n == k + 1)).map(|w| w.span).collect()
     }
 
     /// All files and windows as one record; `wheel` is the momentum of a wheel per rad/s of its speed.
@@ -108,10 +106,8 @@ impl RecordArguments {
         let each = data.iter().enumerate().flat_map(|(of, files)| files.iter().map(move |path| (of, path)));
         for (k, (of, path)) in each.enumerate() {
             let found = self.read(path, wheel)?;
-            if let Some(cut) = self.cut(found.record, k)? {
-                all[of] = core::mem::take(&mut all[of]).join(cut);
-                read_as.push(found.read_as);
-            }
+            all[of] = core::mem::take(&mut all[of]).join(self.cut(found.record, k)?);
+            read_as.push(found.read_as);
         }
         Ok((all, read_as))
     }
@@ -120,7 +116,7 @@ impl RecordArguments {
     pub(crate) fn parts(&self, path: &Path) -> Result<Parts, Error> {
         self.check_windows(1)?;
         self.tell_axes();
-        Parts::open(path, &self.options(true), &self.windows(0).unwrap_or_default())
+        Parts::open(path, &self.options(true), &self.windows(0))
     }
 
     pub(crate) fn check_windows(&self, files: usize) -> Result<(), Error> {
@@ -129,7 +125,16 @@ impl RecordArguments {
             let rule = format!("there are {files} files");
             return Err(Error::input("--window", &value, &rule, "count them from 1"));
         }
-        Ok(())
+        let without = (0..files).find(|k| !self.window.is_empty() && self.windows(*k).is_empty());
+        without.map_or(Ok(()), |k| {
+            let rule = format!("file {} has none, and others have", k + 1);
+            Err(Error::input(
+                "--window",
+                "",
+                &rule,
+                &format!("give --window {}:t0,t1 too, or leave the file out", k + 1),
+            ))
+        })
     }
 
     pub(crate) fn tell_axes(&self) {
@@ -143,13 +148,13 @@ impl RecordArguments {
         }
     }
 
-    /// The windows of the file with number `k`; `None` where other files alone have some.
-    fn cut(&self, record: Record, k: usize) -> Result<Option<Record>, Error> {
-        match self.windows(k) {
-            None => Ok(None),
-            Some(own) if own.is_empty() => Ok(Some(record)),
-            Some(own) => record.windows(&own).map(Some).map_err(|error| Error::Input(error.to_string())),
+    /// The windows of the file with number `k`, or all of it.
+    fn cut(&self, record: Record, k: usize) -> Result<Record, Error> {
+        let own = self.windows(k);
+        if own.is_empty() {
+            return Ok(record);
         }
+        record.windows(&own).map_err(|error| Error::Input(error.to_string()))
     }
 
     fn options(&self, increments: bool) -> ReadOptions {

@@ -22,6 +22,11 @@ pub(crate) struct TableArguments {
 }
 
 impl TableArguments {
+    /// Whether a flag names columns.
+    pub(crate) fn names_columns(&self) -> bool {
+        self.columns.is_some()
+    }
+
     /// What they say, with the unit of the angular velocity.
     pub(crate) fn reading(&self, rate_unit: Option<RateUnit>) -> ReadOptions {
         ReadOptions::default()

@@ -8,7 +8,7 @@ use polhode::num::Dd;
 use polhode::observe::{Errors, Monitor};
 use polhode::rotation::Quat;
 use polhode::run::{Run, RunError, Schedule, ScheduleError};
-use polhode_files::error::{Error, warn};
+use polhode_files::error::Error;
 use polhode_files::text::short;
 
 use crate::cost;
@@ -222,13 +222,8 @@ impl Looks {
         let clock = Clock { start: course.start_time, step };
         let steps =
             if course.step.is_some() { whole_steps(course, clock)? } else { libm::ceil(regular) as u64 };
-        if step * speed > 1.0 && !adaptive {
-            warn(&format!(
-                "{}: '{}': turns the body by {:.1} rad per step; above 1 rad no stepping method is accurate; take a smaller step",
-                course.flags.step,
-                short(step),
-                step * speed
-            ));
+        if !adaptive {
+            cost::warn_coarse(course.flags.step, step, speed);
         }
         let mut run =
             Run::from_point(method.as_ref(), &self.body, start.to_f64(), clock).map_err(|error| {

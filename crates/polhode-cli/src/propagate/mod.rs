@@ -14,7 +14,7 @@ use polhode::num::{Dd, Real};
 use polhode::observe::Monitor;
 use polhode::rotation::{Vec3, rotation_angle};
 use polhode::run::{Run, RunError, Sample, Watch};
-use polhode_files::error::{Error, warn};
+use polhode_files::error::Error;
 use polhode_files::instant::positive_duration;
 use polhode_files::numbers::{numbers, positive};
 use polhode_pages::table::{Format, RowWriter};
@@ -236,11 +236,8 @@ impl Propagate {
         if !columns.errors() {
             run = run.watching(Watch::Never);
         }
-        if h * speed > 1.0 && !adaptive {
-            warn(&format!(
-                "--step: '{h:?}': turns the body by {:?} rad per step; above 1 rad no stepping method is accurate; take a smaller step",
-                h * speed
-            ));
+        if !adaptive {
+            cost::warn_coarse("--step", h, speed);
         }
         let turn = speed * (before - clock.start);
         let trial = if adaptive && speed > 0.0 {

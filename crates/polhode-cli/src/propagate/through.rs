@@ -6,7 +6,7 @@ use nalgebra::{Quaternion, UnitQuaternion};
 use polhode::audit::{Attitudes, QuaternionOrder};
 use polhode::body::{Body, Problem, Time};
 use polhode::flow::{Interpolation, ThroughError};
-use polhode_files::error::{Error, tell};
+use polhode_files::error::{Error, tell, warn};
 use polhode_files::text::visible;
 use polhode_files::{ReadOptions, trajectory};
 use polhode_pages::table::{Cell, Column, RowWriter, Table};
@@ -70,10 +70,7 @@ impl Propagate {
         let jump = between.largest_jump();
         if jump > SMOOTH * fastest {
             let rule = "the angular velocity jumps by up to";
-            tell(
-                "note",
-                &format!("these are not attitudes of one free motion: {rule} {jump:.1e} rad/s at them"),
-            );
+            warn(&format!("these are not attitudes of one free motion: {rule} {jump:.1e} rad/s at them"));
         }
         if !between.pieces().iter().all(|piece| piece.complete) {
             tell(

@@ -149,9 +149,23 @@ fn records_that_tell_no_attitude_are_refused_by_name() {
     );
     let merged = run(&format!("attitude {twice} --kind rate"));
     assert!(merged.code == 0 && merged.err.contains("averaged"), "{}", merged.err);
+    let two = "name,t,wx,wy,wz\na,0,1,0,0\nb,0.1,2,0,0\na,0.2,1,0,0\nb,0.3,2,0,0\n";
+    let two = scratch.file("two.csv", two);
+    refused_with(
+        &["attitude", &two, "--kind", "rate"],
+        &["line 4", "(name)", "rows of 'b' lie between rows of this body"],
+    );
     let broken = file("broken.csv", "0,1,0,0\n0.1,nan,0,0\n");
     refused_with(&["attitude", &broken], &["line 3", "nan"]);
     let plain = file("plain.csv", &even);
+    let bare = simulated(&scratch, "bare.csv", "--every 0.1");
+    let of_bare = |flags: &str| run(&format!("attitude {bare} --kind rate {flags}")).err;
+    assert!(
+        of_bare("").contains("no unit of the readings is named, they are read as rad/s"),
+        "{}",
+        of_bare("")
+    );
+    assert!(!of_bare("--rate-unit rad/s").contains("no unit"));
     let with = |flags: &str| format!("attitude {plain} {flags}");
     let refused = |flags: &str, says: &[&str]| refused_with(&words(&with(flags)), says);
     refused("--samples 5", &["--samples", "5", "even"]);

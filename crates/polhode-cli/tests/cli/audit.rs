@@ -381,3 +381,21 @@ fn columns_that_are_not_read_are_named_and_none_stands_twice() {
     let answer = run(&format!("audit {beside} {BODY} --tolerance 0.5"));
     assert!(answer.code == 2 && answer.err.contains("0.5 is more than 0.1"), "{answer:?}");
 }
+
+#[test]
+fn a_second_attitude_that_is_not_read_is_no_part_of_a_verdict() {
+    let scratch = Scratch::new("audit-second");
+    let line = "propagate --moments 1,2,3 --omega 0.4,1,-0.3 --attitude 1,0,0,0 --until 5 --every 0.1 --fields t,q,omega";
+    let text = output(line);
+    let mut lines = text.lines();
+    let header = format!("{},box2_qw,box2_qx,box2_qy,box2_qz\n", lines.next().unwrap());
+    let rows: String = lines.map(|row| format!("{row},1,0,0,0\n")).collect();
+    let file = scratch.file("two.csv", header + &rows);
+    refused(
+        &format!("audit {file} --moments 1,2,3"),
+        &["two.csv", "the columns box2_qw, box2_qx, box2_qy and box2_qz hold another attitude", "--columns"],
+    );
+    let named = "--columns qw=q_w,qx=q_x,qy=q_y,qz=q_z,wx=omega_body_x,wy=omega_body_y,wz=omega_body_z";
+    let answer = run(&format!("audit {file} --moments 1,2,3 {named}"));
+    assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);
+}

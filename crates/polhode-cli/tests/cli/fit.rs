@@ -286,6 +286,13 @@ fn unusable_input_is_refused_by_file_line_and_column() {
         &["no samples between 5 s and 6 s", "from 0 s to 0.1 s"],
     );
     refused(2, &format!("fit {short} --window 2:0,1"), &["--window: '2:0.0,1.0'", "there are 1 files"]);
+    refused(
+        2,
+        &format!("fit {short} {wide} --window 1:0,0.1"),
+        &["--window", "file 2 has none, and others have", "--window 2:t0,t1"],
+    );
+    let half = scratch.file("half.csv", "t,wx (deg/s),wy,wz\n0,1,2,3\n1,2,3,4\n");
+    refused(2, &format!("fit {half}"), &["half.csv", "column 3 (wy)", "names no unit, and another rate"]);
     refused(2, &format!("fit {short} --trace 1 --momentum 2"), &["--trace", "--momentum", "cannot be used"]);
 
     let record = scratch.0.join("record.csv").display().to_string();

@@ -89,16 +89,29 @@ fn one_motion_is_read_from_quaternions_matrices_and_angles_alike() {
     assert_eq!(stated["attitudes"]["reading"], "quaternion x,y,z,w");
 
     // yaw, pitch and roll of turns about z, y and x, in degrees
-    let angles = quaternions.iter().map(|[t, w, x, y, z]| {
-        let degrees = |x: f64| x.to_degrees();
-        vec![
-            *t,
-            degrees(libm::atan2(2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z))),
-            degrees(libm::asin((2.0 * (w * y - x * z)).clamp(-1.0, 1.0))),
-            degrees(libm::atan2(2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))),
-        ]
-    });
-    let angles = scratch.file("angles.csv", table("t,euler_1,euler_2,euler_3", angles));
+    let angles: Vec<Vec<f64>> = quaternions
+        .iter()
+        .map(|[t, w, x, y, z]| {
+            let degrees = |x: f64| x.to_degrees();
+            vec![
+                *t,
+                degrees(libm::atan2(2.0 * (x * y + w * z), 1.0 - 2.0 * (y * y + z * z))),
+                degrees(libm::asin((2.0 * (w * y - x * z)).clamp(-1.0, 1.0))),
+                degrees(libm::atan2(2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y))),
+            ]
+        })
+        .collect();
+    // columns that say what they turn about, in any order
+    for header in ["t,yaw (deg),pitch (deg),roll (deg)", "t,roll (deg),pitch (deg),yaw (deg)"] {
+        let in_order = |row: &Vec<f64>| match header.starts_with("t,yaw") {
+            true => row.clone(),
+            false => vec![row[0], row[3], row[2], row[1]],
+        };
+        let named = scratch.file("named.csv", table(header, angles.iter().map(in_order)));
+        assert!((of(&json(&format!("fit {named} --euler zyx"))) - of(&whole)).abs() < 1e-9, "{header}");
+        refused(2, &format!("fit {named} --euler zxz"), &["--euler: 'zxz'", "about x, y and z"]);
+    }
+    let angles = scratch.file("angles.csv", table("t,euler_1,euler_2,euler_3", angles.into_iter()));
     refused(2, &format!("fit {angles}"), &["--euler, as zyx"]);
     refused(2, &format!("fit {angles} --euler zyx"), &["--angle-unit rad or deg"]);
     let by_angles = json(&format!("fit {angles} --euler zyx --angle-unit deg"));
@@ -120,6 +133,29 @@ fn a_direction_that_is_stated_wrongly_and_one_that_nobody_can_tell_are_refused()
     refused(1, &format!("fit {top}"), &["axisymmetric", "--attitude body-to-space or space-to-body"]);
     let stated = json(&format!("fit {top} --attitude body-to-space"));
     assert!((stated["principal"][0].as_f64().unwrap() - 1.0 / 4.2).abs() < 1e-2);
+}
+
+#[test]
+fn rates_about_the_axes_of_space_are_told_by_the_attitudes_beside_them() {
+    let scratch = Scratch::new("fit-attitudes-space");
+    let text = output(&format!("{SIMULATE} --attitude-noise 1e-4 --noise 1e-4"));
+    let file = scratch.file("body.csv", &text);
+    assert_eq!(run(&format!("fit {file}")).code, 0);
+    let turned = text.lines().skip(1).map(|line| {
+        let mut cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        let attitude = nalgebra::Quaternion::new(cells[1], cells[2], cells[3], cells[4]);
+        let rate = nalgebra::Vector3::new(cells[5], cells[6], cells[7]);
+        let rate = nalgebra::UnitQuaternion::new_normalize(attitude) * rate;
+        cells[5..].copy_from_slice(rate.as_slice());
+        cells
+    });
+    let space = scratch.file("space.csv", table(text.lines().next().unwrap(), turned));
+    refused(
+        2,
+        &format!("fit {space}"),
+        &["space.csv", "rates are those about the axes of space", "--from attitudes"],
+    );
+    assert_eq!(run(&format!("fit {space} --from attitudes")).code, 0);
 }
 
 #[test]

@@ -22,6 +22,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::checksum::Checksum;
+use crate::cost;
 use crate::flags::force::Forces;
 use crate::flags::tumbling::latitude;
 use candidates::Candidates;
@@ -69,6 +70,16 @@ pub(super) struct Acting {
 }
 
 impl Acting {
+    /// Whether a torque in N m acts, or what makes one, or a wheel.
+    fn is_sized(&self) -> bool {
+        let Forces { torque_body, torque_space, drag, .. } = &self.forces;
+        self.weight_moment != [0.0; 3]
+            || torque_body.is_some()
+            || torque_space.is_some()
+            || drag.is_some()
+            || !self.wheels.is_empty()
+    }
+
     /// The body of a member without its wheels.
     pub(super) fn on(&self, inertia: Inertia) -> Result<Body, MemberError> {
         let body = Body::heavy(inertia, self.weight_moment.into())?;
@@ -197,6 +208,16 @@ impl Spec {
                 let own = if method.tolerance().is_some() { span * speed } else { 0.0 };
                 steps.last().map_or(0.0, |steps| *steps as f64).max(own)
             }
+        }
+    }
+
+    /// Warns of a step in which the first member turns too far.
+    pub(super) fn warn_coarse(&self) {
+        if let Motion::Stepped { method, clock, .. } = &self.plan.motion
+            && method.tolerance().is_none()
+            && let Ok(first) = self.member(0)
+        {
+            cost::warn_coarse("[run]: step", clock.step, first.omega_body.norm());
         }
     }
 

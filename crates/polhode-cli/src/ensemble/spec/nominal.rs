@@ -14,7 +14,7 @@ use polhode_files::toml_file::Section;
 use polhode_files::wheel;
 
 use super::{Acting, elements};
-use crate::flags::body::{Described, described};
+use crate::flags::body::{Described, described, warn_of_ratios};
 use crate::flags::force::{Forces, NO_ORBIT, conic, plane, table};
 use crate::flags::start::{Factor, angle_unit, rate_unit};
 
@@ -130,6 +130,9 @@ impl Nominal {
             elements,
             epoch,
         };
+        if nominal.acting.is_sized() {
+            body.text("body")?.into_iter().for_each(warn_of_ratios);
+        }
         if let Some(inertia) = &nominal.inertia {
             nominal.check(body, force, start, inertia)?;
         }
