@@ -27,6 +27,8 @@ pub struct FoundTrajectory {
     pub comments: Vec<String>,
     /// Names of the columns that are not read.
     pub unread: Vec<String>,
+    /// Those of them that hold the attitude of a body with a name of its own, as `box2_qw`.
+    pub second_attitude: Vec<String>,
     /// In which units times and angular velocities are: the former were brought to s, the latter are as they stand.
     pub read_as: ReadAs,
 }
@@ -122,6 +124,12 @@ fn found(mut table: Table) -> Result<FoundTrajectory, TableError> {
         angles_are_named: angles_are_named(&table),
         counts_steps: table.counts_steps(),
         unread: table.header.unread().map(|name| visible(name).into_owned()).collect(),
+        second_attitude: table
+            .header
+            .second_attitude()
+            .into_iter()
+            .map(|name| visible(name).into_owned())
+            .collect(),
         comments: table.comments,
         read_as,
     })

@@ -179,9 +179,10 @@ impl Audit {
         memory::check_files(&[path.to_path_buf()], 2)?;
         let mut found = trajectory::read(path, &self.reading.table())?;
         self.reading.order(&mut found)?;
-        if let Some(stem) = another_attitude(&found.unread).filter(|_| !self.reading.names_columns()) {
+        if !found.second_attitude.is_empty() && !self.reading.names_columns() {
             let rule = format!(
-                "the columns {stem}w, {stem}x, {stem}y and {stem}z hold another attitude, which is not read"
+                "the columns {} hold another attitude, which is not read",
+                found.second_attitude.join(", ")
             );
             return Err(Error::input(name, "", &rule, "name those of one body by --columns"));
         }
@@ -281,12 +282,4 @@ fn timed(record: &mut Trajectory, body: Option<&Body>, place: &str) -> Result<St
         "the record counts steps; they are taken to be {} s long, as the body turns; --time-unit gives their length",
         short(step)
     ))
-}
-
-/// What the names of four columns begin with that are those of a quaternion.
-fn another_attitude(unread: &[String]) -> Option<&str> {
-    let stems = unread.iter().filter_map(|name| name.strip_suffix('w').filter(|stem| !stem.is_empty()));
-    let has =
-        |stem: &str, component: char| unread.iter().any(|name| name.strip_suffix(component) == Some(stem));
-    stems.into_iter().find(|stem| ['x', 'y', 'z'].into_iter().all(|component| has(stem, component)))
 }

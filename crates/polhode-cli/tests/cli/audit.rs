@@ -393,7 +393,7 @@ fn a_second_attitude_that_is_not_read_is_no_part_of_a_verdict() {
     let file = scratch.file("two.csv", header + &rows);
     refused(
         &format!("audit {file} --moments 1,2,3"),
-        &["two.csv", "the columns box2_qw, box2_qx, box2_qy and box2_qz hold another attitude", "--columns"],
+        &["two.csv", "the columns box2_qw, box2_qx, box2_qy, box2_qz hold another attitude", "--columns"],
     );
     let named = "--columns qw=q_w,qx=q_x,qy=q_y,qz=q_z,wx=omega_body_x,wy=omega_body_y,wz=omega_body_z";
     let answer = run(&format!("audit {file} --moments 1,2,3 {named}"));

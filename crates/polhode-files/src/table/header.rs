@@ -133,11 +133,25 @@ impl Header {
 
     /// The names of the other columns, of those that have one; the places and velocities of MuJoCo are known to be such.
     pub(crate) fn unread(&self) -> impl Iterator<Item = &str> {
+        self.others().map(|name| name.text.trim()).filter(|name| !name.is_empty())
+    }
+
+    /// Names of columns that are not read and hold the attitude of a body with a name of its own; none where there is none.
+    pub(crate) fn second_attitude(&self) -> Vec<&str> {
+        let others: Vec<Name> = self.others().cloned().collect();
+        let bodies = owned(&others).ok().flatten().unwrap_or_default();
+        let places =
+            bodies.into_iter().find_map(|body| body.attitude).map_or(Vec::new(), |group| group.places);
+        places.into_iter().filter_map(|place| self.others().nth(place)).map(|name| name.text.trim()).collect()
+    }
+
+    /// The names that are not read.
+    fn others(&self) -> impl Iterator<Item = &Name> {
         let read: Vec<usize> =
             self.columns().into_iter().chain(self.time).chain(self.nanoseconds).chain(self.id).collect();
         let others =
             (0..).zip(&self.names).filter(move |(place, _)| !self.is_generalized && !read.contains(place));
-        others.map(|(_, name)| name.text.trim()).filter(|name| !name.is_empty())
+        others.map(|(_, name)| name)
     }
 
     /// The one component that a quaternion or an angular velocity lacks, or that there is none.
