@@ -6,7 +6,7 @@ use polhode::audit::Direction;
 /// Turns between two samples beyond which the mean of their rates says little, rad.
 const LARGEST: f64 = 0.5;
 /// Share of the mean square rate that the attitudes leave in the axes that are right, at most: errors of both, and of the mean over a step.
-const AGREE: f64 = 0.01;
+const AGREE: f64 = 0.1;
 /// The least share in the axes of the body, and over that in space, of rates that are not in axes of the body.
 const DISAGREE: (f64, f64) = (0.04, 9.0);
 
