@@ -131,9 +131,12 @@ impl<'t> Rows<'t> {
 #[derive(Default)]
 struct Owner {
     name: String,
-    /// The first name of all, and the last that was another than the present one.
-    earlier: [String; 2],
+    /// The first names that came before it.
+    earlier: Vec<String>,
 }
+
+/// Names that are kept: of more bodies in turn the first would come again.
+const KEPT: usize = 64;
 
 impl Owner {
     /// Refuses rows of several bodies, whose names come again; those of a counter do not.
@@ -147,10 +150,8 @@ impl Owner {
             let rule = format!("rows of '{}' lie between rows of this body", visible(&self.name));
             return Err(table.refused_cell(id, Rule::Other(rule)).with_remedy("name a file of one body"));
         }
-        let [first, last] = &mut self.earlier;
-        core::mem::swap(last, &mut self.name);
-        if first.is_empty() {
-            first.push_str(last);
+        if self.earlier.len() < KEPT {
+            self.earlier.push(self.name.clone());
         }
         self.name.clear();
         self.name.push_str(name);
