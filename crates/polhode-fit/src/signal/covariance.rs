@@ -139,7 +139,9 @@ impl Covariance {
 /// A column of several matrices: the noise of the rates at each level of it, and torque noise.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn add_levels(into: &mut [Several], noise: &[f64], white: Several, torque: &[Several]) {
-    for ((entry, noise), torque) in into.iter_mut().zip(noise).zip(torque) {
+    let (mut entries, mut noise, mut torque) = (into.iter_mut(), noise.iter(), torque.iter());
+    // zipped, eight rows would be gathered into the registers in the place of one
+    while let (Some(entry), Some(noise), Some(torque)) = (entries.next(), noise.next(), torque.next()) {
         let mut own = *torque;
         for k in 0..REGISTER {
             own.0[k] += noise * white.0[k];
@@ -259,10 +261,10 @@ fn add_pairs(sum: &mut Columns<'_>, tests: &TestFunctions, time: f64, products: 
     let rows = 3 * seen.count;
     // the blocks of all tests in a column of this one: one multiplies its φ', the other its φ
     let (mut slopes, mut values) = ([0.0; ROWS], [0.0; ROWS]);
-    for k in 0..seen.count.min(MOST) {
-        for p in 0..3 {
-            (slopes[3 * k + p], values[3 * k + p]) = (seen.slope[k], seen.value[k]);
-        }
+    let of_tests = seen.slope.iter().zip(&seen.value).take(seen.count);
+    let rows_of_tests = slopes.as_chunks_mut::<3>().0.iter_mut().zip(values.as_chunks_mut::<3>().0);
+    for ((slopes, values), (slope, value)) in rows_of_tests.zip(of_tests) {
+        (*slopes, *values) = ([*slope; 3], [*value; 3]);
     }
     for q in 0..3 {
         let (jj, kj) = (repeated(jj, q), repeated(&kj, q));
