@@ -349,8 +349,8 @@ fn times(a: Several, b: Several) -> Several {
 #[inline(always)]
 fn root(pivot: Several, is_positive: &mut [bool; REGISTER]) -> (Several, Several) {
     let (mut root, mut inverse) = (pivot, pivot);
-    for lane in 0..REGISTER {
-        is_positive[lane] &= pivot.0[lane] > 0.0;
+    for (lane, is_positive) in is_positive.iter_mut().enumerate() {
+        *is_positive &= pivot.0[lane] > 0.0;
         root.0[lane] = pivot.0[lane].sqrt();
         inverse.0[lane] = 1.0 / root.0[lane];
     }
