@@ -15,7 +15,8 @@ use crate::physical::coordinates::{eigen, tensor};
 use crate::signal::stretch::Stretch;
 use crate::solve::weak_estimate::{Part, WeakEstimate};
 use crate::thresholds::likelihood::{
-    CHANGE, CONSTANT, DAMPING, DIFFERENCE, FIRST, LIGHT, MOST_DAMPING, SAMPLES, STEPS, STILL, TOGETHER,
+    CHANGE, CONSTANT, CREEP, DAMPING, DIFFERENCE, FIRST, LIGHT, LOOK, MOST_DAMPING, SAMPLES, STEPS, STILL,
+    TOGETHER,
 };
 
 /// Numbers of a start.
@@ -163,6 +164,16 @@ struct Sums {
     samples: usize,
 }
 
+/// What a model leaves of the readings of one stretch.
+struct Left {
+    /// Of the samples that it is asked for.
+    radius: f64,
+    /// The readings that the motion would give.
+    readings: Vec<Vector3<f64>>,
+    /// Sum of squares of what is left, per reciprocal variance of the noise.
+    squares: f64,
+}
+
 struct Problem<'a> {
     tracks: Vec<Track<'a>>,
     weak: &'a WeakEstimate,
@@ -205,28 +216,40 @@ impl Problem<'_> {
 
     /// Gauss's and Newton's steps, damped; with whether they ended at the bottom.
     fn settle(&self, mut model: Model, radius: f64, is_pulled: bool) -> Option<(Model, bool)> {
-        let cost = |sums: &[Sums], model: &Model| {
-            let own: f64 = sums.iter().map(|sums| sums.squares).sum();
+        let cost = |left: &[Left], model: &Model| {
+            let own: f64 = left.iter().map(|left| left.squares).sum();
             own + self.beside(model, is_pulled)
         };
-        let mut sums = self.sums(&model, radius)?;
-        let mut least = cost(&sums, &model);
-        let (mut damping, mut is_still) = (0.0, false);
-        for _ in 0..STEPS {
+        let left = self.left(&model, radius)?;
+        let mut least = cost(&left, &model);
+        let mut sums = self.sums_beside(&model, &left)?;
+        let (mut damping, mut is_still, mut before) = (0.0, false, least);
+        for count in 1..=STEPS {
             let step = self.step(&sums, &model, damping, is_pulled);
             is_still = damping == 0.0 && step.as_ref().is_some_and(|(_, gain)| *gain < STILL * self.variance);
-            let next = step.and_then(|(next, _)| Some((self.sums(&next, radius)?, next)));
-            match next.map(|(there, next)| (cost(&there, &next), there, next)) {
-                Some((less, there, next)) if less <= least => {
+            let next = step.and_then(|(next, _)| Some((self.left(&next, radius)?, next)));
+            let next = next.map(|(left, next)| (cost(&left, &next), left, next));
+            let is_less = next.as_ref().is_some_and(|(less, ..)| *less <= least);
+            // the derivatives are dear, and not asked for where a step is not taken
+            let taken = next
+                .filter(|_| is_less)
+                .and_then(|(less, left, next)| Some((self.sums_beside(&next, &left)?, next, less)));
+            match taken {
+                Some((there, next, less)) => {
                     (model, sums, least) = (next, there, less);
                     damping = if damping > DAMPING { damping / CHANGE } else { 0.0 };
                 }
                 // at the bottom rounding alone decides
-                Some(_) if is_still => {}
-                _ => damping = f64::max(CHANGE * damping, DAMPING),
+                None => damping = f64::max(CHANGE * damping, DAMPING),
             }
             if is_still || damping > MOST_DAMPING {
                 break;
+            }
+            if count % LOOK == 0 {
+                if before - least < CREEP * self.variance {
+                    break;
+                }
+                before = least;
             }
         }
         Some((model, is_still))
@@ -298,50 +321,73 @@ impl Problem<'_> {
         Some((next, gain))
     }
 
-    fn sums(&self, model: &Model, radius: f64) -> Option<Vec<Sums>> {
+    /// What a model leaves of the readings.
+    fn left(&self, model: &Model, radius: f64) -> Option<Vec<Left>> {
         let each = self.tracks.iter().zip(&model.starts);
-        each.map(|(track, start)| self.sums_of(track, &model.at, start, radius)).collect()
+        each.map(|(track, start)| self.left_of(track, &model.at, start, radius)).collect()
     }
 
-    fn sums_of(&self, track: &Track<'_>, at: &Unknowns, start: &Vector3<f64>, radius: f64) -> Option<Sums> {
+    fn left_of(&self, track: &Track<'_>, at: &Unknowns, start: &Vector3<f64>, radius: f64) -> Option<Left> {
+        let terms = terms_of(&self.weak.columns, at, track.stretch);
+        let back = terms.sensor.try_inverse()?;
+        let motion = Motion::new(&tensor(&at.x), &(track.wheel * terms.input), start)?;
+        let reading = |sample: usize| {
+            let t = track.stretch.times[sample] - track.middle;
+            Some(back * (motion.at(t)? + terms.offset))
+        };
+        let readings = track.within(radius).map(reading).collect::<Option<Vec<Vector3<f64>>>>()?;
+        let each = track.within(radius).zip(&readings);
+        let squares: f64 =
+            each.map(|(sample, reading)| (track.stretch.rates[sample] - reading).norm_squared()).sum();
+        Some(Left { radius, readings, squares: squares * track.weight })
+            .filter(|left| left.squares.is_finite())
+    }
+
+    fn sums(&self, model: &Model, radius: f64) -> Option<Vec<Sums>> {
+        self.sums_beside(model, &self.left(model, radius)?)
+    }
+
+    /// The same of what the model leaves.
+    fn sums_beside(&self, model: &Model, left: &[Left]) -> Option<Vec<Sums>> {
+        let each = self.tracks.iter().zip(&model.starts).zip(left);
+        each.map(|((track, start), left)| self.sums_of(track, &model.at, start, left)).collect()
+    }
+
+    fn sums_of(&self, track: &Track<'_>, at: &Unknowns, start: &Vector3<f64>, left: &Left) -> Option<Sums> {
         let columns = &self.weak.columns;
-        let (count, common) = (columns.len(), self.common());
+        let (count, common, radius) = (columns.len(), self.common(), left.radius);
         let terms = terms_of(columns, at, track.stretch);
         let back = terms.sensor.try_inverse()?;
         let turned = (track.wheel * terms.input).norm() / eigen(terms.j).0[0];
         let h = DIFFERENCE / (1.0 + radius.min(track.reach()) * turned.max(1.0));
-        let motion = |k: Option<usize>, h: f64| {
+        let motion = |k: usize, h: f64| {
             let (mut x, mut u, mut start) = (at.x, terms.input, *start);
             match k {
-                Some(k) if k < count => u += h,
-                Some(k) if k < common => x[k - count] += h,
-                Some(k) => start[k - common] += h,
-                None => {}
+                k if k < count => u += h,
+                k if k < common => x[k - count] += h,
+                k => start[k - common] += h,
             }
             Motion::new(&tensor(&x), &(track.wheel * u), &start)
         };
-        let here = motion(None, 0.0)?;
         let of_motion = |k: &usize| *k >= count || columns[*k].class() == Class::Input;
-        let moved =
-            (0..common + OWN).filter(of_motion).map(|k| Some((k, motion(Some(k), h)?, motion(Some(k), -h)?)));
+        let moved = (0..common + OWN).filter(of_motion).map(|k| Some((k, motion(k, h)?, motion(k, -h)?)));
         let moved = moved.collect::<Option<Vec<_>>>()?;
         let size = common + OWN;
         let mut sums = Sums {
             matrix: DMatrix::zeros(size, size),
             gradient: DVector::zeros(size),
-            squares: 0.0,
-            samples: 0,
+            squares: left.squares,
+            samples: left.readings.len(),
         };
         let mut rows = vec![Vector3::zeros(); size];
-        for sample in track.within(radius) {
+        for (sample, reading) in track.within(radius).zip(&left.readings) {
             let t = track.stretch.times[sample] - track.middle;
-            let reading = back * (here.at(t)? + terms.offset);
             let residual = track.stretch.rates[sample] - reading;
             for (k, above, below) in &moved {
                 rows[*k] = back * (above.at(t)? - below.at(t)?) / (2.0 * h);
             }
             for (k, column) in columns.iter().enumerate() {
-                if let Some(change) = column.effect().change_of_rate(&reading) {
+                if let Some(change) = column.effect().change_of_rate(reading) {
                     rows[k] = back * -change;
                 }
             }
@@ -351,14 +397,11 @@ impl Problem<'_> {
                     sums.matrix[(i, k)] += rows[i].dot(&rows[k]);
                 }
             }
-            sums.squares += residual.norm_squared();
-            sums.samples += 1;
         }
         sums.matrix.fill_lower_triangle_with_upper_triangle();
         sums.matrix *= track.weight;
         sums.gradient *= track.weight;
-        sums.squares *= track.weight;
-        sums.squares.is_finite().then_some(sums)
+        Some(sums)
     }
 }
 

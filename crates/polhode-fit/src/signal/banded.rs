@@ -164,7 +164,63 @@ pub(crate) fn likelihood(band: usize, e: &[f64], column: impl Fn(usize, &mut [f6
     Some((2.0 * determinant.log(), squares))
 }
 
+/// Numbers of several matrices side by side.
+#[derive(Clone, Copy)]
+#[repr(align(64))]
+pub(crate) struct Several(pub(crate) [f64; REGISTER]);
+
+/// The same as [`likelihood`] of several matrices with one band, an entry of each beside those of the others; each with the bits that it has
+/// alone.
+pub(crate) fn likelihoods(
+    band: usize,
+    e: &[f64],
+    column: impl Fn(usize, &mut [Several]),
+) -> [Option<(f64, f64)>; REGISTER] {
+    const ZERO: Several = Several([0.0; REGISTER]);
+    // zeros behind a column for the pivots before it
+    let pitch = band + PIVOTS;
+    // ones on the diagonal behind the last column, up to whole steps, change nothing
+    let size = e.len().div_ceil(PIVOTS) * PIVOTS;
+    let room = (4 * pitch).min(size);
+    let (mut columns, mut right) = (vec![ZERO; room * pitch], vec![ZERO; room + pitch]);
+    let (mut determinants, mut squares) = ([Product::ONE; REGISTER], [0.0; REGISTER]);
+    let mut is_positive = [true; REGISTER];
+    let (mut first, mut loaded) = (0, 0);
+    for j in (0..size).step_by(PIVOTS) {
+        let end = (j + pitch).min(size);
+        if end - first > room {
+            columns.copy_within((j - first) * pitch..(loaded - first) * pitch, 0);
+            right.copy_within(j - first..loaded - first, 0);
+            first = j;
+        }
+        while loaded < end {
+            let own = &mut columns[(loaded - first) * pitch..][..pitch];
+            own.fill(ZERO);
+            match e.get(loaded) {
+                Some(_) => column(loaded, own),
+                None => own[0] = Several([1.0; REGISTER]),
+            }
+            right[loaded - first] = Several([e.get(loaded).copied().unwrap_or(0.0); REGISTER]);
+            loaded += 1;
+        }
+        let own = &mut columns[(j - first) * pitch..(end - first) * pitch];
+        let right = &mut right[j - first..][..pitch];
+        eliminate_several(own, right, pitch, &mut is_positive);
+        if is_positive == [false; REGISTER] {
+            return [None; REGISTER];
+        }
+        for (own, value) in own.chunks_exact(pitch).zip(right).take(PIVOTS) {
+            for lane in 0..REGISTER {
+                squares[lane] += value.0[lane] * value.0[lane];
+                determinants[lane].multiply(own[0].0[lane]);
+            }
+        }
+    }
+    core::array::from_fn(|k| is_positive[k].then(|| (2.0 * determinants[k].log(), squares[k])))
+}
+
 /// The logarithm of a product, of which few are taken.
+#[derive(Clone, Copy)]
 struct Product {
     log: f64,
     rest: f64,
@@ -269,6 +325,87 @@ fn eliminate(columns: &mut [f64], pitch: usize, pivots: usize, band: usize) -> b
     true
 }
 
+/// a − b c.
+#[inline(always)]
+fn less(a: Several, b: Several, c: Several) -> Several {
+    let mut rest = a;
+    for lane in 0..REGISTER {
+        rest.0[lane] -= b.0[lane] * c.0[lane];
+    }
+    rest
+}
+
+/// a b.
+#[inline(always)]
+fn times(a: Several, b: Several) -> Several {
+    let mut product = a;
+    for lane in 0..REGISTER {
+        product.0[lane] *= b.0[lane];
+    }
+    product
+}
+
+/// The root of a pivot, and one over it.
+#[inline(always)]
+fn root(pivot: Several, is_positive: &mut [bool; REGISTER]) -> (Several, Several) {
+    let (mut root, mut inverse) = (pivot, pivot);
+    for (lane, is_positive) in is_positive.iter_mut().enumerate() {
+        *is_positive &= pivot.0[lane] > 0.0;
+        root.0[lane] = pivot.0[lane].sqrt();
+        inverse.0[lane] = 1.0 / root.0[lane];
+    }
+    (root, inverse)
+}
+
+/// The number of a right-hand side that belongs to a pivot.
+#[inline(always)]
+fn over(a: Several, root: Several) -> Several {
+    let mut quotient = a;
+    for lane in 0..REGISTER {
+        quotient.0[lane] /= root.0[lane];
+    }
+    quotient
+}
+
+/// The same of the first columns of several matrices and of their right-hand sides.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn eliminate_several(
+    columns: &mut [Several],
+    right: &mut [Several],
+    pitch: usize,
+    is_positive: &mut [bool; REGISTER],
+) {
+    let (own, others) = columns.split_at_mut(PIVOTS * pitch);
+    let (a, rest) = own.split_at_mut(pitch);
+    let (b, c) = rest.split_at_mut(pitch);
+    // the pivots, each less the parts of those before it
+    let (root_a, per_a) = root(a[0], is_positive);
+    let (l_ab, l_ac) = (times(a[1], per_a), times(a[2], per_a));
+    let (root_b, per_b) = root(less(b[0], l_ab, l_ab), is_positive);
+    let l_bc = times(less(b[1], l_ab, l_ac), per_b);
+    let (root_c, per_c) = root(less(less(c[0], l_ac, l_ac), l_bc, l_bc), is_positive);
+    let of_a = over(right[0], root_a);
+    let of_b = over(less(right[1], l_ab, of_a), root_b);
+    let of_c = over(less(less(right[2], l_ac, of_a), l_bc, of_b), root_c);
+    (a[0], a[1], a[2], b[0], b[1], c[0]) = (root_a, l_ab, l_ac, root_b, l_bc, root_c);
+    (right[0], right[1], right[2]) = (of_a, of_b, of_c);
+    // a row at a time
+    let rows = a[3..].iter_mut().zip(&mut b[2..]).zip(&mut c[1..]).zip(&mut right[3..]);
+    for (((a, b), c), right) in rows {
+        *a = times(*a, per_a);
+        *b = times(less(*b, *a, l_ab), per_b);
+        *c = times(less(less(*c, *a, l_ac), *b, l_bc), per_c);
+        *right = less(less(less(*right, *a, of_a), *b, of_b), *c, of_c);
+    }
+    for (k, other) in others.chunks_exact_mut(pitch).enumerate() {
+        let (a, b, c) = (&a[k + 3..], &b[k + 2..], &c[k + 1..]);
+        let (l_a, l_b, l_c) = (a[0], b[0], c[0]);
+        for (((sum, a), b), c) in other.iter_mut().zip(a).zip(b).zip(c) {
+            *sum = less(less(less(*sum, l_a, *a), l_b, *b), l_c, *c);
+        }
+    }
+}
+
 /// Widest column.
 const WIDEST: usize = 64;
 
@@ -334,6 +471,30 @@ mod tests {
             assert!((squares / expected - 1.0).abs() < 1e-14, "{size} {band}");
         }
         assert!(likelihood(2, &[1.0; 4], |j, into| into[0] = 2.0 - j as f64).is_none());
+    }
+
+    /// Also where some of them are not positive.
+    #[test]
+    fn several_likelihoods_have_the_bits_of_each() {
+        for (size, band) in [(9, 2), (200, 2), (61, 23), (250, 26), (7, 9), (2, 5)] {
+            let entry = |lane: usize, i: usize, j: usize| match i == j {
+                true => 2.5 + lane as f64 - if lane == 3 && i > 5 { 7.0 } else { 0.0 },
+                false => 0.4 / (1 + i * j + lane + i.abs_diff(j)) as f64,
+            };
+            let e: Vec<f64> = (0..size).map(|i| 1.0 + (i % 5) as f64).collect();
+            let together = likelihoods(band, &e, |j, into| {
+                (j..size.min(j + band + 1)).for_each(|i| {
+                    (0..REGISTER).for_each(|lane| into[i - j].0[lane] = entry(lane, i, j));
+                });
+            });
+            for (lane, found) in together.into_iter().enumerate() {
+                let alone = likelihood(band, &e, |j, into| {
+                    (j..size.min(j + band + 1)).for_each(|i| into[i - j] = entry(lane, i, j));
+                });
+                assert_eq!(found, alone, "{size} {band} {lane}");
+                assert_eq!(found.is_none(), lane == 3 && size > 6, "{size} {band} {lane}");
+            }
+        }
     }
 
     #[test]

@@ -4,12 +4,12 @@ use multiversion::multiversion;
 use nalgebra::{Matrix3, Vector3};
 
 use crate::physical::coordinates::ENTRIES;
-use crate::signal::banded::{Banded, Columns, REGISTER, likelihood};
+use crate::signal::banded::{Banded, Columns, REGISTER, Several, likelihood, likelihoods};
 use crate::signal::both::both;
 use crate::signal::moments::{Group, group, ranges};
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::{Terms, cross_derivative};
-use crate::signal::test_functions::{Seen, TestFunctions};
+use crate::signal::test_functions::{MOST, Seen, TestFunctions};
 use crate::thresholds::radius::LONG;
 
 /// Variances of the noise of the rates and of the torque noise, over the variance of the noise of the record.
@@ -93,6 +93,22 @@ impl Covariance {
         })
     }
 
+    /// The same at several levels side by side, none more than there are numbers in a register; the last of them stands for those that are
+    /// not there.
+    pub(crate) fn likelihoods(&self, e: &[f64], levels: &[Levels]) -> [Option<(f64, f64)>; REGISTER] {
+        let Some(last) = levels.last() else { return [None; REGISTER] };
+        let each: [Levels; REGISTER] = core::array::from_fn(|k| *levels.get(k).unwrap_or(last));
+        let of_each = each.map(|levels| self.of_torque(levels));
+        let torque: [Vec<Several>; 3] = [0, 1, 2].map(|q| {
+            let row = |row: usize| Several(core::array::from_fn(|k| of_each[k][q][row]));
+            (0..3 * self.tests.reach + 3).map(row).collect()
+        });
+        let white = Several(each.map(|levels| levels.white));
+        likelihoods(3 * self.tests.reach + 2, e, |j, into| {
+            add_levels(&mut into[..self.used(j)], self.noise.column(j), white, &torque[j % 3]);
+        })
+    }
+
     /// Mean variances of the residuals by noise of the rates and by torque noise of level 1.
     pub(crate) fn mean_variances(&self) -> (f64, f64) {
         let size = 3 * self.tests.count;
@@ -120,8 +136,24 @@ impl Covariance {
     }
 }
 
-/// Room for the rows of all tests that overlap at one time, and for a column from any of them on.
-const BLOCKS: usize = 64;
+/// A column of several matrices: the noise of the rates at each level of it, and torque noise.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn add_levels(into: &mut [Several], noise: &[f64], white: Several, torque: &[Several]) {
+    let (mut entries, mut noise, mut torque) = (into.iter_mut(), noise.iter(), torque.iter());
+    // zipped, eight rows would be gathered into the registers in the place of one
+    while let (Some(entry), Some(noise), Some(torque)) = (entries.next(), noise.next(), torque.next()) {
+        let mut own = *torque;
+        for k in 0..REGISTER {
+            own.0[k] += noise * white.0[k];
+        }
+        *entry = own;
+    }
+}
+
+/// Rows of all tests that overlap at one time, in whole registers.
+const ROWS: usize = (3 * MOST).div_ceil(REGISTER) * REGISTER;
+/// With as many behind them as are read together.
+const ROOM: usize = ROWS + REGISTER;
 
 /// Σ A Aᵀ with A = −φ' J + φ K by pairs of tests.
 fn of_rates(stretch: &Stretch, noise: &[Vector3<f64>], terms: &Terms, tests: &TestFunctions) -> Banded {
@@ -206,11 +238,16 @@ impl<'a> Maker<'a> {
 /// A column of a matrix again and again, for all tests of a column of blocks.
 // no closure: one would not be compiled for wide registers
 #[inline(always)]
-fn repeated(m: &Matrix3<f64>, column: usize) -> [f64; BLOCKS / 2] {
+fn repeated(m: &Matrix3<f64>, column: usize) -> [f64; ROWS] {
     let three = [m[(0, column)], m[(1, column)], m[(2, column)]];
-    let mut all = [0.0; BLOCKS / 2];
-    for (k, entry) in all.iter_mut().enumerate().take(BLOCKS / 2 - 2) {
+    // three registers hold whole columns
+    let mut period = [0.0; 3 * REGISTER];
+    for (k, entry) in period.iter_mut().enumerate() {
         *entry = three[k % 3];
+    }
+    let mut all = [0.0; ROWS];
+    for (k, entry) in all.iter_mut().enumerate() {
+        *entry = period[k % (3 * REGISTER)];
     }
     all
 }
@@ -223,33 +260,34 @@ fn add_pairs(sum: &mut Columns<'_>, tests: &TestFunctions, time: f64, products: 
     let seen = Seen::new(tests, time);
     let rows = 3 * seen.count;
     // the blocks of all tests in a column of this one: one multiplies its φ', the other its φ
-    let (mut slopes, mut values) = ([0.0; BLOCKS], [0.0; BLOCKS]);
-    for k in 0..rows {
-        (slopes[k], values[k]) = (seen.slope[k / 3], seen.value[k / 3]);
+    let (mut slopes, mut values) = ([0.0; ROWS], [0.0; ROWS]);
+    let of_tests = seen.slope.iter().zip(&seen.value).take(seen.count);
+    let rows_of_tests = slopes.as_chunks_mut::<3>().0.iter_mut().zip(values.as_chunks_mut::<3>().0);
+    for ((slopes, values), (slope, value)) in rows_of_tests.zip(of_tests) {
+        (*slopes, *values) = ([*slope; 3], [*value; 3]);
     }
-    let (mut by_slope, mut by_value) = ([[0.0; BLOCKS]; 3], [[0.0; BLOCKS]; 3]);
     for q in 0..3 {
         let (jj, kj) = (repeated(jj, q), repeated(&kj, q));
         let (jk, kk) = (repeated(jk, q), repeated(kk, q));
-        for k in 0..BLOCKS / 2 {
-            by_slope[q][k] = kj[k] * values[k] - jj[k] * slopes[k];
-            by_value[q][k] = kk[k] * values[k] - jk[k] * slopes[k];
+        let (mut by_slope, mut by_value) = ([0.0; ROOM], [0.0; ROOM]);
+        for k in 0..ROWS {
+            by_slope[k] = kj[k] * values[k] - jj[k] * slopes[k];
+            by_value[k] = kk[k] * values[k] - jk[k] * slopes[k];
         }
-    }
-    for row in 0..seen.count {
-        let (c, d) = (seen.slope[row], seen.value[row]);
-        for q in 0..3 {
+        for row in 0..seen.count {
+            let (c, d) = (seen.slope[row], seen.value[row]);
             let from = 3 * row + q;
-            // whole registers: behind the last row stand zeros
-            let column = sum.column_mut(3 * (seen.first + row) + q);
-            // tests that only touch add nothing
-            let used = ((rows - from).div_ceil(REGISTER) * REGISTER).min(column.len());
-            let values = by_value[q][from..from + used].chunks_exact(REGISTER);
-            let slopes = by_slope[q][from..from + used].chunks_exact(REGISTER);
-            for ((into, value), slope) in column[..used].chunks_exact_mut(REGISTER).zip(values).zip(slopes) {
+            // whole registers: behind the last row stand zeros; tests that only touch add nothing
+            let registers = (rows - from).div_ceil(REGISTER);
+            let values = by_value[from..].as_chunks::<REGISTER>().0;
+            let slopes = by_slope[from..].as_chunks::<REGISTER>().0;
+            let column = sum.column_mut(3 * (seen.first + row) + q).as_chunks_mut::<REGISTER>().0;
+            for ((into, value), slope) in column.iter_mut().zip(values).zip(slopes).take(registers) {
+                let mut own = *into;
                 for k in 0..REGISTER {
-                    into[k] += value[k] * d - slope[k] * c;
+                    own[k] += value[k] * d - slope[k] * c;
                 }
+                *into = own;
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Test functions of compact support on a stretch of samples, and their weights in sums over samples.
 
 use crate::thresholds::test_functions::{ROUNDED, SAMPLES_PER_TEST, TESTS_PER_RADIUS, TIE};
+use core::ops::Range;
 use std::sync::Arc;
 
 use multiversion::multiversion;
@@ -237,19 +238,52 @@ impl Seen {
     pub(crate) fn each(&self) -> impl Iterator<Item = (usize, f64, f64)> {
         (0..self.count).map(|k| (self.first + k, self.slope[k], self.value[k]))
     }
+}
 
-    /// Σ over pairs of tests of the blocks Z of `inverse`, weighted by slope·slope, value·slope and value·value; in
-    /// the second the row belongs to the value.
-    pub(crate) fn sums(&self, inverse: &Banded) -> [Matrix3<f64>; 3] {
-        let mut sums = [Matrix3::zeros(); 3];
-        for (m, a, b) in self.each() {
-            for (n, c, d) in self.each() {
-                let z = Matrix3::from_fn(|p, q| inverse.get(3 * m + p, 3 * n + q));
-                sums[0] += z * (a * c);
-                sums[1] += z * (b * c);
-                sums[2] += z * (b * d);
+/// The blocks of a symmetric matrix between the tests that are seen together, which most times share with those before them.
+pub(crate) struct Blocks<'a> {
+    of: &'a Banded,
+    seen: Range<usize>,
+    /// Of each pair of tests, column by column with zeros behind.
+    pairs: Vec<[f64; LANES]>,
+}
+
+impl<'a> Blocks<'a> {
+    pub(crate) fn of(matrix: &'a Banded) -> Self {
+        Blocks { of: matrix, seen: 0..0, pairs: Vec::new() }
+    }
+
+    /// Σ over pairs of tests of their blocks, weighted by slope·slope, value·slope and value·value; in the second the row belongs to the
+    /// value.
+    pub(crate) fn sums(&mut self, seen: &Seen) -> [Matrix3<f64>; 3] {
+        let tests = seen.first..seen.first + seen.count;
+        if self.seen != tests {
+            let pairs = tests.clone().flat_map(|m| tests.clone().map(move |n| (m, n)));
+            let block = |(m, n): (usize, usize)| {
+                let entry = |k: usize| self.of.get(3 * m + k % 3, 3 * n + k / 3);
+                core::array::from_fn(|k| if k < 9 { entry(k) } else { 0.0 })
+            };
+            self.pairs = pairs.map(block).collect();
+            self.seen = tests;
+        }
+        sums(seen, &self.pairs).map(|sum| Matrix3::from_column_slice(&sum[..9]))
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn sums(seen: &Seen, pairs: &[[f64; LANES]]) -> [[f64; LANES]; 3] {
+    let (mut with_slopes, mut mixed, mut with_values) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+    for (m, row) in pairs.chunks_exact(seen.count.max(1)).enumerate() {
+        let (a, b) = (seen.slope[m], seen.value[m]);
+        for (n, block) in row.iter().enumerate() {
+            let (c, d) = (seen.slope[n], seen.value[n]);
+            let (by_slopes, by_both, by_values) = (a * c, b * c, b * d);
+            for k in 0..LANES {
+                with_slopes[k] += block[k] * by_slopes;
+                mixed[k] += block[k] * by_both;
+                with_values[k] += block[k] * by_values;
             }
         }
-        sums
     }
+    [with_slopes, mixed, with_values]
 }

@@ -1,5 +1,6 @@
 //! The torque noise of a stretch, and the noise of its rates, by restricted likelihood.
 
+use crate::signal::banded::REGISTER;
 use crate::signal::both::both;
 use crate::signal::covariance::{Covariance, Levels, Shape};
 use crate::thresholds::levels::{BETWEEN, DECADES, FIRST_DECADE, GAIN, RESHAPED, SECTIONS, STEP};
@@ -23,15 +24,21 @@ pub(crate) fn likeliest(
     last: Option<Levels>,
 ) -> Option<Levels> {
     let search = |shape| Search { part, e, variance, free, white: choice.white, shape };
-    let none = search(Shape::Moments).at(0.0);
     let near = last.filter(|last| last.torque > 0.0);
-    let mut best: Option<Found> = None;
     // the shape of before first
     let first = near.map_or(Shape::Moments, |last| last.shape);
     let second = if first == Shape::Moments { Shape::Alike } else { Shape::Moments };
-    let of = |shape| search(shape).most_likely(near, none.as_ref());
-    let (first, second) = both(e.len() > LONG / 3, || of(first), || of(second));
-    for found in [first, second].into_iter().flatten() {
+    let (none, found) = match near {
+        Some(near) => stepped(near, search(first), search(second)),
+        None => {
+            let none = search(Shape::Moments).at(0.0);
+            let of = |shape| search(shape).most_likely(none.as_ref());
+            let (first, second) = both(e.len() > LONG / 3, || of(first), || of(second));
+            (none, [first, second])
+        }
+    };
+    let mut best: Option<Found> = None;
+    for found in found.into_iter().flatten() {
         if best.as_ref().is_none_or(|b| found.cost < b.cost - RESHAPED) {
             best = Some(found);
         }
@@ -43,6 +50,26 @@ pub(crate) fn likeliest(
     Some(best.levels)
 }
 
+/// No torque noise, and one step from `near` towards the likeliest of each shape.
+fn stepped(near: Levels, first: Search<'_>, second: Search<'_>) -> (Option<Found>, [Option<Found>; 2]) {
+    let (unit, none) = (first.unit(), Search { shape: Shape::Moments, ..first });
+    let middle = libm::log10(near.torque / near.white / unit);
+    let around = [-STEP, 0.0, STEP].map(|step| unit * libm::pow(10.0, middle + step));
+    let [a, b, c] = around;
+    let asked = [(none, 0.0), (first, a), (first, b), (first, c), (second, a), (second, b), (second, c)];
+    let [none, a, b, c, other_a, other_b, other_c] = together(asked);
+    let cost = |found: Option<Found>| found.map_or(f64::INFINITY, |found| found.cost);
+    let next = |costs: [Option<Found>; 3]| unit * libm::pow(10.0, nearer(costs.map(cost), middle));
+    (none, together([(first, next([a, b, c])), (second, next([other_a, other_b, other_c]))]))
+}
+
+/// The likeliest noise of the rates of searches in one covariance, each with torque noise of a ratio to it.
+fn together<const N: usize>(asked: [(Search<'_>, f64); N]) -> [Option<Found>; N] {
+    let levels = asked.map(|(search, ratio)| search.levels(ratio));
+    let each = asked.first().map(|(search, _)| search.part.likelihoods(search.e, &levels));
+    core::array::from_fn(|k| Some(asked[k].0.found(asked[k].1, each.as_ref()?.get(k).copied()??)))
+}
+
 /// Levels and twice their negative log-likelihood.
 struct Found {
     levels: Levels,
@@ -51,6 +78,7 @@ struct Found {
     floor: f64,
 }
 
+#[derive(Clone, Copy)]
 struct Search<'a> {
     part: &'a Covariance,
     e: &'a [f64],
@@ -61,20 +89,26 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The likeliest torque noise of this shape; where `near` is given one step towards it, and else `None` where it does
-    /// not bring the gain over `none` that is asked for.
-    fn most_likely(&self, near: Option<Levels>, none: Option<&Found>) -> Option<Found> {
+    /// Torque noise whose part in the equations is that of the noise of the rates, per its level.
+    fn unit(&self) -> f64 {
         let (noise, torque) = self.part.mean_variances();
-        // per level of the noise of the rates
-        let unit = noise / torque;
-        let at = |exponent: f64| self.at(unit * libm::pow(10.0, exponent));
-        let cost = |exponent: f64| at(exponent).map_or(f64::INFINITY, |found| found.cost);
-        if let Some(near) = near {
-            return at(newton(cost, libm::log10(near.torque / near.white / unit)));
-        }
+        noise / torque
+    }
+
+    /// The likeliest torque noise of this shape; `None` where it does not bring the gain over `none` that is asked for.
+    fn most_likely(&self, none: Option<&Found>) -> Option<Found> {
+        let unit = self.unit();
+        let ratio = |exponent: f64| unit * libm::pow(10.0, exponent);
+        let cost = |exponent: f64| self.at(ratio(exponent)).map_or(f64::INFINITY, |found| found.cost);
         let mut best = (f64::INFINITY, 0.0);
-        for exponent in (0..=DECADES).map(|k| k as f64 - FIRST_DECADE) {
-            let Some(found) = at(exponent) else { continue };
+        let exponents: [f64; DECADES + 1] = core::array::from_fn(|k| k as f64 - FIRST_DECADE);
+        let each = exponents.chunks(REGISTER).flat_map(|exponents| {
+            let asked: [(Search<'_>, f64); REGISTER] =
+                core::array::from_fn(|k| (*self, ratio(exponents.get(k).copied().unwrap_or(exponents[0]))));
+            exponents.iter().copied().zip(together(asked))
+        });
+        for (exponent, found) in each {
+            let Some(found) = found else { continue };
             if found.cost < best.0 {
                 best = (found.cost, exponent);
             }
@@ -85,13 +119,24 @@ impl Search<'_> {
         if none.is_some_and(|none| none.cost - best.0 <= BETWEEN * GAIN) {
             return None;
         }
-        at(vertex(cost, golden(cost, best.1 - 1.0, best.1 + 1.0)))
+        let middle = golden(cost, best.1 - 1.0, best.1 + 1.0);
+        let around = together([-STEP, 0.0, STEP].map(|step| (*self, ratio(middle + step))));
+        let costs = around.map(|found| found.map_or(f64::INFINITY, |found| found.cost));
+        self.at(ratio(lowest(costs, middle)))
+    }
+
+    /// Levels with torque noise of `ratio` times the noise of the rates, which is that of the record.
+    fn levels(&self, ratio: f64) -> Levels {
+        Levels { white: 1.0, torque: ratio, shape: self.shape }
     }
 
     /// The likeliest noise of the rates with torque noise of `ratio` times its level.
     fn at(&self, ratio: f64) -> Option<Found> {
-        let (determinant, squares) =
-            self.part.likelihood(self.e, Levels { white: 1.0, torque: ratio, shape: self.shape })?;
+        Some(self.found(ratio, self.part.likelihood(self.e, self.levels(ratio))?))
+    }
+
+    /// The same from the determinant and the squares at these levels.
+    fn found(&self, ratio: f64, (determinant, squares): (f64, f64)) -> Found {
         let count = self.e.len() as f64;
         let squares = squares / self.variance / self.free;
         // what the samples themselves say of their noise counts as much as the residuals do
@@ -101,7 +146,7 @@ impl Search<'_> {
         let cost = determinant + equations * libm::log(white) + (squares + own) / white;
         // the determinant grows with the torque noise; squares are not negative, nor is the noise of the rates below half
         let floor = determinant + own * 2.0 * (1.0 - core::f64::consts::LN_2);
-        Some(Found { levels: Levels { white, torque: white * ratio, shape: self.shape }, cost, floor })
+        Found { levels: Levels { white, torque: white * ratio, shape: self.shape }, cost, floor }
     }
 }
 
@@ -127,7 +172,11 @@ pub(crate) fn golden(cost: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> 
 /// One step of Newton's method towards the least of a function from `middle`, by no more than a decade: from one round to the next
 /// the minimum itself moves.
 pub(crate) fn newton(cost: impl Fn(f64) -> f64, middle: f64) -> f64 {
-    let [below, least, above] = [-STEP, 0.0, STEP].map(|step| cost(middle + step));
+    nearer([-STEP, 0.0, STEP].map(|step| cost(middle + step)), middle)
+}
+
+/// The same from what the function is [`STEP`] below `middle`, there, and as far above.
+fn nearer([below, least, above]: [f64; 3], middle: f64) -> f64 {
     let (slope, curvature) = (below - above, below - 2.0 * least + above);
     let step = if curvature > 0.0 { STEP * (0.5 * slope / curvature) } else { slope };
     if step.is_finite() { middle + step.clamp(-1.0, 1.0) } else { middle }
@@ -136,7 +185,11 @@ pub(crate) fn newton(cost: impl Fn(f64) -> f64, middle: f64) -> f64 {
 /// The vertex of the parabola about `middle`, where that is a minimum: a golden section alone ends at one of a few places, and
 /// descents would go to and fro between two of them.
 pub(crate) fn vertex(cost: impl Fn(f64) -> f64, middle: f64) -> f64 {
-    let [below, least, above] = [-STEP, 0.0, STEP].map(|step| cost(middle + step));
+    lowest([-STEP, 0.0, STEP].map(|step| cost(middle + step)), middle)
+}
+
+/// The same from what the function is [`STEP`] below `middle`, there, and as far above.
+fn lowest([below, least, above]: [f64; 3], middle: f64) -> f64 {
     let (slope, curvature) = (below - above, below - 2.0 * least + above);
     if slope.is_finite() && curvature > 0.0 {
         middle + STEP * (0.5 * slope / curvature).clamp(-1.0, 1.0)

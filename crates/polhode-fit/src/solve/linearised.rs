@@ -12,7 +12,7 @@ use crate::signal::covariance::{Covariance, Levels};
 use crate::signal::moments::groups;
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::{Terms, cross_derivative, slope};
-use crate::signal::test_functions::{Seen, TestFunctions};
+use crate::signal::test_functions::{Blocks, Seen, TestFunctions};
 use crate::solve::driven::take_out;
 use crate::thresholds::radius::LONG;
 
@@ -76,11 +76,12 @@ impl Linearised {
     /// V of this stretch, at the samples that the equations were linearised at.
     pub(crate) fn inflation(&self, whitened: &Whitened, stretch: &Stretch, noise: &[Vector3<f64>]) -> Form {
         let inverse = whitened.factor.inverse_band();
+        let mut blocks = Blocks::of(&inverse);
         let bases: [Matrix3<f64>; 5] = core::array::from_fn(basis);
         let mut sum = Form::zeros();
         for group in groups(stretch, noise, self.tests.radius) {
             let seen = Seen::new(&self.tests, group.time);
-            let [aa, ba, bb] = seen.sums(&inverse);
+            let [aa, ba, bb] = blocks.sums(&seen);
             let ab = ba.transpose();
             let w = self.terms.rate(&group.reading);
             let drag = Matrix3::identity() * self.terms.drag + slope(&w) * self.terms.quadratic;
