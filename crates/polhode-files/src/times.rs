@@ -65,7 +65,7 @@ impl TimesColumn {
             Rows::Plain(mut lines, first) => {
                 let is_ahead = first.is_some();
                 lines.text = first.map(|line| line.text).unwrap_or_default();
-                Layout::Lines { lines, is_ahead, header: None, place: None }
+                Layout::Lines { lines, is_ahead, header: None, unit_said: None, place: None }
             }
             rows => Layout::Blocks { table: Box::new(self.blocks(rows)?), last: None },
         };
@@ -108,6 +108,8 @@ enum Layout {
         is_ahead: bool,
         /// The last comment above the rows, which may name the columns.
         header: Option<String>,
+        /// The first unit of time that a comment above the rows names in full.
+        unit_said: Option<String>,
         /// Known with the first line.
         place: Option<Place>,
     },
@@ -145,8 +147,10 @@ impl Times<'_> {
     /// The next time.
     fn advance(&mut self) -> Result<Option<f64>, TableError> {
         let none = |name: &str| TableError::of(name, Rule::Rows).with_remedy("write one time a line");
-        let (lines, is_ahead, header, found) = match &mut self.text {
-            Layout::Lines { lines, is_ahead, header, place } => (lines, is_ahead, header, place),
+        let (lines, is_ahead, header, unit_said, found) = match &mut self.text {
+            Layout::Lines { lines, is_ahead, header, unit_said, place } => {
+                (lines, is_ahead, header, unit_said, place)
+            }
             Layout::Blocks { table, last } => {
                 while table.next()? {
                     table.check()?;
@@ -166,6 +170,9 @@ impl Times<'_> {
             }
             let text = lines.text.trim();
             if let Some(comment) = uncommented(text) {
+                if found.is_none() {
+                    *unit_said = unit_said.take().or_else(|| unit_in(comment));
+                }
                 *header = Some(comment.into());
                 continue;
             }
@@ -199,6 +206,14 @@ impl Times<'_> {
                 }
             }
             let Some(place) = found else { continue };
+            if let (Some(unit), true) = (unit_said.take(), self.is_empty && place.takes_seconds(text)) {
+                let rule = Rule::Other(format!(
+                    "is a number of s, but a comment above speaks of {}",
+                    visible(&unit)
+                ));
+                let refused = lines.refused(rule).in_column(place.column, &place.name).value(text);
+                return Err(refused.with_remedy("name the unit in a header such as 't (s)'"));
+            }
             self.is_empty = false;
             return place.time(lines, self.column.epoch).map(Some);
         }
@@ -206,6 +221,13 @@ impl Times<'_> {
 }
 
 impl Place {
+    /// Whether the time in a line is a number without any unit.
+    fn takes_seconds(&self, line: &str) -> bool {
+        let cells = if self.columns > 1 { self.delimiter.names(line) } else { vec![line.to_string()] };
+        let number = cells.get(self.column).map(|cell| self.delimiter.number(cell).parse::<f64>());
+        self.unit.is_none() && !self.is_julian && matches!(number, Some(Ok(_)))
+    }
+
     /// The time in a line.
     fn time(&self, line: &Text, epoch: Option<Epoch>) -> Result<f64, TableError> {
         let text = line.text.trim();
@@ -316,6 +338,19 @@ fn unit_of(name: &Name) -> Option<TimeUnit> {
     TimeUnit::named(&name.letters).filter(|_| name.unit.is_none())
 }
 
+/// The first unit of time but seconds that a comment names in full, other than behind a number, as in 'a record of 24 hours'.
+fn unit_in(comment: &str) -> Option<String> {
+    const UNITS: [&str; 6] = ["minute", "hour", "day", "millisecond", "microsecond", "nanosecond"];
+    let words: Vec<&str> =
+        comment.split(|c: char| !c.is_alphanumeric()).filter(|word| !word.is_empty()).collect();
+    let is_unit = |word: &str| {
+        let word = word.to_lowercase();
+        UNITS.contains(&word.strip_suffix('s').unwrap_or(&word))
+    };
+    let behind_number = |k: usize| k > 0 && words[k - 1].ends_with(|c: char| c.is_ascii_digit());
+    (0..words.len()).find(|&k| is_unit(words[k]) && !behind_number(k)).map(|k| words[k].into())
+}
+
 /// The cells of a line; between blanks a unit in brackets is that of the name before it.
 fn cells(line: &str, delimiter: Delimiter) -> Vec<String> {
     let mut cells: Vec<String> = Vec::new();
@@ -364,6 +399,13 @@ mod tests {
         assert_eq!(read("t (min) flux\n1 7\n2 7\n", None, None), Ok(vec![60.0, 120.0]));
         assert_eq!(read("# flux t (h)\n7 1\n", Some("2"), None), Ok(vec![3600.0]));
         assert_eq!(read("# of 2024\n1\n", None, None), Ok(vec![1.0]));
+        for comment in ["# time in minutes", "# Hours since launch\n# of a pass"] {
+            assert_eq!(read(&format!("{comment}\nt (s)\n1\n"), None, None), Ok(vec![1.0]), "{comment}");
+            assert_eq!(read(&format!("{comment}\n1min\n"), None, None), Ok(vec![60.0]), "{comment}");
+            assert!(read(&format!("{comment}\n1\n"), None, None).is_err(), "{comment}");
+        }
+        assert_eq!(read("# a pass of 24 hours, or 1440 minutes\n1\n", None, None), Ok(vec![1.0]));
+        assert_eq!(read("1\n# minutes from here on are no header\n2\n", None, None), Ok(vec![1.0, 2.0]));
     }
 
     #[test]
@@ -404,6 +446,11 @@ mod tests {
                 ", line 2, column 1 (JD_UTC): '2451545.5': is a Julian date; give",
             ),
             ("MJD,mag\n59000.5,9\n", Some("MJD"), ", line 1: column 'MJD' has modified Julian dates; write"),
+            (
+                "# time in minutes\n1\n",
+                None,
+                ", line 2, column 1 (t): '1': is a number of s, but a comment above speaks of minutes; name the unit",
+            ),
             ("t,b\n1,2\n2025-01-01,5\n", None, ", line 3, column 1 (t): '2025-01-01' is a date; give"),
         ] {
             let error = read(text, wanted, None).unwrap_err();

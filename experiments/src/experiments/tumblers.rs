@@ -142,7 +142,7 @@ fn hyperion(context: &Context) -> Result<Vec<Figure>, Error> {
         let (quantity, unit, source) = ("|omega|/n", "", GOLDBERG);
         let computed = spin / orbit.mean_motion;
         figures.push(Figure { body, quantity, unit, source, printed: rate, within: Some(0.0005), computed });
-        let (quantity, unit, source) = ("Lyapunov's time, order of", "d", HARBISON);
+        let (quantity, unit, source) = ("Lyapunov time, order of magnitude", "d", HARBISON);
         let computed = lyapunov(context, &found)?;
         figures.push(Figure { body, quantity, unit, source, printed: 100.0, within: None, computed });
         // what is said of the precession in the body is said of 2005
@@ -161,7 +161,7 @@ fn hyperion(context: &Context) -> Result<Vec<Figure>, Error> {
     let apart = attitude(&last).angle_to(&other);
     for (quantity, unit, printed, within, computed) in [
         ("|omega|", "deg/d", 72.0, Some(0.5), per_day),
-        ("attitude, from the other print", "rad", 0.0, Some(1e-3), apart),
+        ("angle between the attitudes of both prints", "rad", 0.0, Some(1e-3), apart),
     ] {
         figures.push(Figure { body, quantity, unit, source: HARBISON, printed, within, computed });
     }

@@ -2,6 +2,7 @@
 
 mod boxes;
 mod closed;
+mod doubled;
 mod error;
 mod hull;
 mod mend;
@@ -23,7 +24,7 @@ use welded::Welded;
 ///
 /// Vertices are the same where their bits are; [`Surface`] welds those that are nearly the same, and mends and closes. Through
 /// every edge as many triangles run one way as the other, so that the surface is a cycle and the volume integral exact. Cavities are parts that face inwards and lie within another part;
-/// parts that overlap count twice. Volume, centre and tensor come from one pass over the triangles, as sums over
+/// parts that overlap count twice, of which [`doubled`](Mesh::doubled) tells. Volume, centre and tensor come from one pass over the triangles, as sums over
 /// the signed tetrahedra that each spans with the middle of the bounding box (so that a mesh far from the origin
 /// loses no digits), compensated.
 ///
@@ -49,6 +50,7 @@ pub struct Mesh {
     triangles: usize,
     vertices: usize,
     unit: Enclosed,
+    doubled: f64,
 }
 
 impl Mesh {
@@ -78,7 +80,8 @@ impl Mesh {
         mesh.check_edges()?;
         mesh.check_parts()?;
         let unit = Enclosed::by(mesh)?;
-        Ok(Mesh { triangles: mesh.triangles.len(), vertices: mesh.vertices.len(), unit })
+        let doubled = doubled::doubled(mesh, unit.volume);
+        Ok(Mesh { triangles: mesh.triangles.len(), vertices: mesh.vertices.len(), unit, doubled })
     }
 
     /// Number of triangles, without those whose corners coincide.
@@ -97,6 +100,15 @@ impl Mesh {
     #[must_use]
     pub fn volume(&self) -> f64 {
         self.unit.volume
+    }
+
+    /// Volume that counts more than once, or as a hole where nothing is, over the enclosed volume: 0 where no parts overlap and the
+    /// surface does not pass through itself.
+    ///
+    /// Seen along 128 × 128 lines across the bounding box: an overlap that is narrower than their distance can be missed.
+    #[must_use]
+    pub fn doubled(&self) -> f64 {
+        self.doubled
     }
 
     /// Mass properties with so much matter in it, in the frame of the vertices.

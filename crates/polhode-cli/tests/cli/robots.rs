@@ -375,6 +375,8 @@ fn meshes_are_mended_closed_or_asked_about() {
     );
     scratch.file("flat.obj", format!("{OBJ_CUBE}f 1 1 2\n"));
     scratch.file("long.obj", OBJ_CUBE.replace("v 1", "v 30"));
+    scratch.file("overlapping.obj", OBJ_CUBE.to_owned() + &shifted(OBJ_CUBE, 0.5));
+    scratch.file("touching.obj", OBJ_CUBE.to_owned() + &shifted(OBJ_CUBE, 1.0));
     scratch.file("groups.obj", format!("g cube\n{OBJ_CUBE}g sheet\nf 1 2 3\n"));
     let ply = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
                element face 4\nproperty list uchar int vertex_indices\nend_header\n\
@@ -398,6 +400,8 @@ fn meshes_are_mended_closed_or_asked_about() {
         ("groups.obj --group cube", 0),
         ("groups.obj --group sheet", 2),
         ("corner.ply", 0),
+        ("overlapping.obj", 0),
+        ("touching.obj", 0),
     ] {
         let answer = scratch.run(&format!("mesh {line} --density 6"));
         assert_eq!(answer.code, code, "{line}: {answer:?}");
@@ -412,6 +416,20 @@ fn meshes_are_mended_closed_or_asked_about() {
     }
     golden("meshes.txt", &text);
     assert!(!names(&scratch.0).is_empty());
+}
+
+/// A second cube, beside the first along x, whose eight corners stand before its own.
+fn shifted(obj: &str, by: f64) -> String {
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    let line = |line: &str| match line.split(' ').collect::<Vec<_>>()[..] {
+        ["v", x, y, z] => format!("v {} {y} {z}\n", number(x) + by),
+        ref face => {
+            "f".to_owned()
+                + &face[1..].iter().map(|n| format!(" {}", number(n) + 8.0)).collect::<String>()
+                + "\n"
+        }
+    };
+    obj.lines().map(line).collect()
 }
 
 /// The same faces seen from the other side.

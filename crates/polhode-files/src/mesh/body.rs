@@ -15,6 +15,9 @@ use crate::text::rounded;
 const LONG: f64 = 20.0;
 const HEAVY: f64 = 1e5;
 
+/// Share of the volume that counts twice from which on this is told: less is what rounded corners of parts that touch have in common.
+const OVERLAP: f64 = 1e-4;
+
 /// How a mesh is made a body, where its file leaves that open.
 #[derive(Clone, Debug, Default)]
 #[non_exhaustive]
@@ -136,6 +139,14 @@ impl MeshOptions {
             1 => warn(&format!("{}: 1 facet without area left out", path.display())),
             many => warn(&format!("{}: {many} facets without area left out", path.display())),
         }
+        if mesh.doubled() > OVERLAP {
+            warn(&format!(
+                "{}: parts overlap, and {} % of the volume counts twice; make them one solid, or give each a mass of its own in a file \
+                 of parts",
+                path.display(),
+                rounded(two_digits(100.0 * mesh.doubled()))
+            ));
+        }
         Ok(mesh)
     }
 
@@ -151,6 +162,10 @@ impl MeshOptions {
             ));
         }
     }
+}
+
+fn two_digits(x: f64) -> f64 {
+    format!("{x:.1e}").parse().unwrap_or(x)
 }
 
 fn three_digits(x: f64) -> f64 {

@@ -114,6 +114,11 @@ impl<'t> Lines<'t> {
         self.text.clear();
         match std::str::from_utf8(&self.bytes[start..]) {
             Ok(line) => self.text.push_str(line),
+            // the mark of byte order in two bytes
+            Err(_) if matches!(self.bytes[..], [0xff, 0xfe, ..] | [0xfe, 0xff, ..]) => {
+                let refused = self.refused(Rule::Other("the text is UTF-16".into()));
+                return Err(refused.with_remedy("save it as UTF-8"));
+            }
             Err(_) => return Err(self.refused(Rule::Utf8)),
         }
         Ok(true)
@@ -138,5 +143,15 @@ mod tests {
         }
         let expected = [(1, "a", true), (2, "b", true), (3, "", true), (4, "", true), (5, "c", false)];
         assert_eq!(found, expected.map(|(n, text, ended)| (n, text.to_string(), ended)));
+    }
+
+    #[test]
+    fn a_text_in_another_coding_is_refused_by_name() {
+        for (mark, says) in [([0xff, 0xfe], "UTF-16"), ([0xfe, 0xff], "UTF-16"), ([0xff, b'a'], "not UTF-8")]
+        {
+            let bytes: Vec<u8> = mark.into_iter().chain(*b"t\0\n\0").collect();
+            let mut lines = Lines::new(Box::new(&bytes[..]), "x".into());
+            assert!(lines.advance().unwrap_err().to_string().contains(says), "{mark:?}");
+        }
     }
 }

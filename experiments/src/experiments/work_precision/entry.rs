@@ -19,9 +19,9 @@ const TOLERANCES: [f64; 7] = [1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13, 1e-15];
 /// Steps are 100 units over 2^k, from this k on.
 const COARSEST: i32 = 5;
 
-/// Beyond the horizon `LONG` a run goes only where it costs at most `AFFORDABLE` evaluations per unit and its median error up to
-/// there is at most `WORTH_WHILE` rad.
-const AFFORDABLE: f64 = 40.0;
+/// Beyond the horizon `LONG` a run goes only where it costs at most `AFFORDABLE` evaluations in all and its median error up to there
+/// is at most `WORTH_WHILE` rad.
+const AFFORDABLE: f64 = 2e7;
 const WORTH_WHILE: f64 = 1e-3;
 
 /// A method is not run at finer steps once so many of them in a row have brought no smaller error: there it is rounding.
@@ -155,7 +155,7 @@ impl Entry {
         let before = horizons.iter().rposition(|horizon| *horizon <= LONG).unwrap_or(0);
         let middle = |values: Vec<f64>| Quantiles::of(values).map_or(f64::INFINITY, |found| found.median);
         let error = middle(errors[before].iter().copied().flatten().collect());
-        if end > LONG && error <= WORTH_WHILE && middle(evaluations.clone()) <= AFFORDABLE {
+        if end > LONG && error <= WORTH_WHILE && middle(evaluations.clone()) * end <= AFFORDABLE {
             all = motions.far().iter().map(|motion| run(motion, end)).collect::<Result<Vec<_>, _>>()?;
             let last = horizons.len() - 1;
             errors[last] = errors_of(&all, end * unit, end * unit);
