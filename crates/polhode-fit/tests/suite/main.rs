@@ -15,6 +15,7 @@ mod poses;
 mod poses_driven;
 mod poses_record;
 mod prior;
+mod report;
 mod segments;
 mod simulate;
 mod sparse;
