@@ -9,6 +9,7 @@
 //!
 //! Source: D. M. Bortz, D. A. Messenger, V. Dukic, Bull. Math. Biol. 85 (2023) 110, doi 10.1007/s11538-023-01208-6.
 
+use multiversion::multiversion;
 use nalgebra::{DMatrix, Matrix3, Matrix5, Vector3, Vector5};
 
 use super::Answer;
@@ -27,7 +28,7 @@ const FEWEST: usize = 10;
 const ROUNDS: usize = 20;
 /// Standard deviations of a coordinate between two points of a difference quotient of the likelihood.
 const APART: f64 = 0.2;
-/// Combinations whose covariance is worked out together.
+/// Combinations, or rows of a matrix, that are worked on together.
 const FEW: usize = 8;
 /// Step, in standard deviations, that ends the rounds, and the search for the largest likelihood.
 const NEAR: f64 = 1e-2;
@@ -353,32 +354,21 @@ impl Banded {
         let mut left = vec![vec![0.0; self.size]; size];
         // a few combinations at a time, whose sums stay near the processor
         for (chunk, some) in combinations.chunks(FEW).enumerate() {
-            for row in 0..self.size {
-                let first = row.saturating_sub(self.width);
-                let entries = &self.entries[self.place(row, first)..self.place(row, row)];
-                let diagonal = 0.5 * self.entries[self.place(row, row)];
-                for (a, combination) in some.iter().enumerate() {
-                    let factor = combination[row / 3];
-                    let sums = &mut left[3 * (FEW * chunk + a) + row % 3];
-                    sums[first..row].iter_mut().zip(entries).for_each(|(sum, entry)| *sum += factor * entry);
-                    sums[row] += factor * diagonal;
-                }
-            }
+            let left = &mut left[3 * FEW * chunk..][..3 * some.len()];
+            from_left(&self.entries, self.width, some, left);
         }
         let across: Vec<Vec<f64>> = (0..count).map(|k| combinations.iter().map(|c| c[k]).collect()).collect();
         let mut result = Banded::zeros(size, size - 1);
-        for (row, left) in left.iter().enumerate() {
-            let mut sums = [0; 3].map(|_| vec![0.0; combinations.len()]);
-            for (k, coefficients) in across.iter().enumerate() {
-                for (q, sums) in sums.iter_mut().enumerate() {
-                    let factor = left[3 * k + q];
-                    sums.iter_mut().zip(coefficients).for_each(|(sum, c)| *sum += factor * c);
+        let mut sums = vec![0.0; FEW * size];
+        for (chunk, left) in left.chunks(FEW).enumerate() {
+            from_right(left, &across, &mut sums);
+            for (row, sums) in sums.chunks_exact(size).take(left.len()).enumerate() {
+                let row = FEW * chunk + row;
+                for column in 0..size {
+                    let half = sums[column % 3 * combinations.len() + column / 3];
+                    let (low, high) = (row.min(column), row.max(column));
+                    result.add(high, low, if low == high { 2.0 * half } else { half });
                 }
-            }
-            for column in 0..size {
-                let half = sums[column % 3][column / 3];
-                let (low, high) = (row.min(column), row.max(column));
-                result.add(high, low, if low == high { 2.0 * half } else { half });
             }
         }
         result
@@ -386,28 +376,7 @@ impl Banded {
 
     /// `None` where the matrix is not positive.
     fn factor(&mut self) -> Option<()> {
-        let stride = self.width + 1;
-        // the columns of the factor from the diagonal on: what is taken off a row lies side by side there
-        let mut columns = vec![0.0; self.entries.len()];
-        for i in 0..self.size {
-            let first = i.saturating_sub(self.width);
-            let place = self.place(i, first);
-            let row = &mut self.entries[place..place + (i - first) + 1];
-            for l in first..i {
-                let entry = row[l - first] / columns[l * stride];
-                row[l - first] = entry;
-                columns[l * stride + i - l] = entry;
-                let column = &columns[l * stride + 1..=l * stride + i - l];
-                row[l - first + 1..].iter_mut().zip(column).for_each(|(sum, other)| *sum -= entry * other);
-            }
-            let square = row[i - first];
-            if square.is_nan() || square <= 0.0 {
-                return None;
-            }
-            row[i - first] = square.sqrt();
-            columns[i * stride] = square.sqrt();
-        }
-        Some(())
+        factor(&mut self.entries, self.size, self.width).then_some(())
     }
 
     /// Of the matrix, once it is factored.
@@ -428,4 +397,71 @@ impl Banded {
             rest[0] = rest[0].map(|v| v / diagonal);
         }
     }
+}
+
+/// Adds the rows of the lower half of a band, with half of the diagonal, times the combinations to `left`: three rows for each.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn from_left(entries: &[f64], width: usize, combinations: &[Combination], left: &mut [Vec<f64>]) {
+    for (row, entries) in entries.chunks_exact(width + 1).enumerate() {
+        let first = row.saturating_sub(width);
+        let entries = &entries[width + first - row..];
+        let (before, diagonal) = (&entries[..row - first], 0.5 * entries[row - first]);
+        for (a, combination) in combinations.iter().enumerate() {
+            let factor = combination[row / 3];
+            let sums = &mut left[3 * a + row % 3];
+            for (sum, entry) in sums[first..row].iter_mut().zip(before) {
+                *sum += factor * entry;
+            }
+            sums[row] += factor * diagonal;
+        }
+    }
+}
+
+/// For each row of `left`, x by x, y by y and z by z, its product with every combination, whose coefficients are given by test function.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn from_right(left: &[Vec<f64>], across: &[Vec<f64>], sums: &mut [f64]) {
+    sums.fill(0.0);
+    for (k, coefficients) in across.iter().enumerate() {
+        let count = coefficients.len();
+        for (left, sums) in left.iter().zip(sums.chunks_exact_mut(3 * count)) {
+            for (factor, sums) in left[3 * k..3 * k + 3].iter().zip(sums.chunks_exact_mut(count)) {
+                for (sum, coefficient) in sums.iter_mut().zip(coefficients) {
+                    *sum += factor * coefficient;
+                }
+            }
+        }
+    }
+}
+
+/// The Cholesky factor in place of the lower half of a band; false where it is not positive.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn factor(entries: &mut [f64], size: usize, width: usize) -> bool {
+    let stride = width + 1;
+    // the columns of the factor from the diagonal on: what is taken off a row lies side by side there
+    let mut columns = vec![0.0; entries.len()];
+    for start in (0..size).step_by(FEW) {
+        let end = (start + FEW).min(size);
+        // a few rows at a time, so that a column that all of them need is fetched once
+        for l in start.saturating_sub(width)..end {
+            for i in start.max(l)..end.min(l + stride) {
+                let column = &mut columns[l * stride..][..=i - l];
+                let row = &mut entries[i * stride + width + l - i..(i + 1) * stride];
+                if i == l {
+                    if row[0].is_nan() || row[0] <= 0.0 {
+                        return false;
+                    }
+                    row[0] = row[0].sqrt();
+                    column[0] = row[0];
+                    continue;
+                }
+                let entry = row[0] / column[0];
+                row[0] = entry;
+                column[i - l] = entry;
+                for (sum, other) in row[1..].iter_mut().zip(&column[1..]) {
+                    *sum -= entry * other;
+                }
+            }
+        }
+    }
+    true
 }

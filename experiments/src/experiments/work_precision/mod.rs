@@ -25,7 +25,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let cases = cases::all(context.scale)?;
     let motions = motions(context, &cases)?;
     let budget = Budget {
-        evaluations: context.scale.pick(10.0, 60.0, 320.0),
+        evaluations: context.scale.pick(10.0, 60.0, 160.0),
         tolerances: context.scale.pick(3, 2, 1),
     };
     let mut parts = Vec::new();
