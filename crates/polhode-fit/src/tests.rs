@@ -3,11 +3,14 @@
 use crate::error::{Clash, FitError, ToldComponent};
 use crate::models::reading_error::ReadingError;
 use crate::physical::constraint::Constraint;
+use crate::physical::coordinates::{Coordinates, Form};
+use crate::report::identifiability::{Identifiability, PrincipalAxis};
 use crate::report::next_step::{Contradiction, NextStep};
 use crate::report::parts::{Halves, Scatter};
 use crate::report::torque_free::{InvariantTrend, Memory};
 use crate::report::warning::Warning;
 use crate::units::product::UnitProduct;
+use nalgebra::{Matrix3, Vector3};
 use polhode::units::RateUnit;
 
 fn says(text: impl ToString, parts: &[&str]) {
@@ -62,6 +65,19 @@ fn refusals_say_their_numbers() {
         &["drag_xx, drag_zz", "3 of 5 numbers"],
     );
     assert!(!FitError::Untold { names: vec!["drag"], rank: 5 }.to_string().contains("of 5"));
+}
+
+/// What a record leaves open is said with the axes that it tells, and which record would tell more.
+#[test]
+fn what_is_open_is_said_in_words() {
+    let spin = Matrix3::from_diagonal(&Vector3::new(1e-8, 1.0, 1e-8));
+    let (singular, body) = (Coordinates::new(1e4, 1e4, 0.0, 0.0, 0.0), Matrix3::identity() / 3.0);
+    let open = Identifiability::new(&(singular, Form::identity()), &spin, &body);
+    let text = FitError::Unidentifiable(Box::new(open)).to_string();
+    says(&text, &["2 of 5 numbers", "(0.0000, 1.0000, 0.0000), y of the sensor, about which the body spins"]);
+    says(text, &[". Record a throw that wobbles", "as from CAD"]);
+    let axis = PrincipalAxis { axis: Vector3::new(0.0, -0.6, -0.8), number: Some(2) };
+    assert_eq!(axis.to_string(), "(0.0000, 0.6000, 0.8000) is a principal axis, numbered 2 here");
 }
 
 #[test]

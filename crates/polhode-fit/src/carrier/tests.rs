@@ -1,7 +1,7 @@
 //! The joint equations against differences of themselves, and closed forms for records that say everything.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
-use polhode::inertia::Inertia;
+use polhode::inertia::{Inertia, MassProperties};
 use polhode::num::Random;
 use polhode::record::{Record, Segment};
 
@@ -178,6 +178,12 @@ fn closed_forms_give_the_tensors_of_exact_records() {
     assert!((found.carrier - carrier()).amax() < 1e-14);
     assert!((found.sizes[0].relative * sure / own - 1.0).abs() < 1e-9);
 
+    let both = [
+        alone(Attached::Nothing, carrier(), None, Some(1.0), sure),
+        alone(Attached::Object, carrier() + object(), None, Some(1.0), sure),
+    ];
+    assert!((start(&both, false).unwrap().object.unwrap() - object()).amax() < 1e-14);
+
     // too light, the other way round, and no size at all
     let refused = |all: &[Alone]| start(all, false).err().unwrap();
     let vague = |tensor: Matrix3<f64>| {
@@ -202,6 +208,29 @@ fn closed_forms_give_the_tensors_of_exact_records() {
 
 fn all_but_proof(sure: f64) -> [Alone; 1] {
     [alone(Attached::Nothing, carrier(), None, None, sure)]
+}
+
+/// What a body adds is the difference of the tensors of all masses about their common centres, with it and without it.
+#[test]
+fn attached_bodies_add_what_the_masses_say() {
+    let (mass, place, own) = (0.7, Vector3::new(0.1, -0.2, 0.05), proof() * 0.1);
+    let (held, at, carrier_mass) = (0.4, Vector3::new(-0.3, 0.1, 0.2), 1.9);
+    let body = MassProperties::new(mass, place, own).unwrap();
+    let about = |points: &[(f64, Vector3<f64>)]| {
+        let total: f64 = points.iter().map(|(m, _)| m).sum();
+        let centre = points.iter().map(|(m, r)| r * *m).sum::<Vector3<f64>>() / total;
+        let one = |(m, r): &(f64, Vector3<f64>)| {
+            let d = r - centre;
+            (Matrix3::identity() * d.norm_squared() - d * d.transpose()) * *m
+        };
+        points.iter().map(one).sum::<Matrix3<f64>>()
+    };
+    let origin = (carrier_mass, Vector3::zeros());
+    let alone = ProofBody::attached(&body, carrier_mass).unwrap().added();
+    assert!((alone - own - about(&[origin, (mass, place)])).amax() < 1e-15);
+    let beside = ProofBody::attached_beside(&body, carrier_mass, (held, at)).unwrap().added();
+    let with = about(&[origin, (held, at), (mass, place)]) - about(&[origin, (held, at)]);
+    assert!((beside - own - with).amax() < 1e-15, "{beside} {with}");
 }
 
 /// A body is physical while no moment exceeds the sum of the others, with what is added to its entries.

@@ -5,11 +5,13 @@ use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode::rotation::{Quat, Vec3};
 
+use crate::likelihood::alignment::at_nodes;
 use crate::likelihood::alternatives::Alternatives;
 use crate::likelihood::choice::{Acting, Moved, is_linear, left_out, with_torque};
 use crate::likelihood::descent::{Levels, Problem, moved};
 use crate::likelihood::growth::{Followed, follow, squares, steady};
-use crate::likelihood::local::{node, nodes, noise, width};
+use crate::likelihood::local::{Node, node, nodes, noise, width};
+use crate::likelihood::momentum::tensor_of;
 use crate::likelihood::motion::{Motion, Start};
 use crate::likelihood::profile::fall;
 use crate::likelihood::sums::{Reduced, Step};
@@ -289,6 +291,54 @@ fn nodes_of_an_even_turn_are_exact() {
     let stretches = [(times, attitudes)];
     let found = width(&stretches, 0.0).unwrap() * rate.norm();
     assert!((NODE..2.0 * NODE).contains(&found), "{found}");
+}
+
+/// Where a width holds fewer than three samples the nearest are taken, and the rates beside a node are the mean of those within its half.
+#[test]
+fn nodes_take_the_nearest_samples() {
+    let rate = vector([0.3, -0.7, 0.4]);
+    let times = [0.0, 1.0, 1.1, 3.0];
+    let turned = |t: &f64| Quat::exponential(Vec3::from(rate * *t));
+    for (middle, far) in [(1, 3), (2, 3)] {
+        let mut attitudes = times.map(|t| turned(&t));
+        attitudes[far] = attitudes[far] * Quat::exponential(Vec3([1.0, 0.0, 0.0]));
+        let found = node(&times, &attitudes, middle, 0.05).unwrap();
+        assert!((found.rate - rate).norm() < 1e-12, "{middle}: {}", found.rate);
+    }
+    let mut attitudes = times.map(|t| turned(&t));
+    attitudes[0] = attitudes[0] * Quat::exponential(Vec3([1.0, 0.0, 0.0]));
+    assert!((node(&times, &attitudes, 3, 0.05).unwrap().rate - rate).norm() < 1e-12);
+
+    let times: Vec<f64> = (0..41).map(|k| 0.1 * f64::from(k)).collect();
+    let attitudes: Vec<Quat<f64>> = times.iter().map(turned).collect();
+    let near = node(&times, &attitudes, 20, 1.0).unwrap();
+    // eleven samples from 1.5 to 2.5 s would be half of a width of two
+    for (place, counts) in [(15, true), (25, true), (14, false), (26, false)] {
+        let mut rates = vec![rate; times.len()];
+        rates[place] += vector([0.0, 0.0, 11.0]);
+        let mean = at_nodes(&[near], &times, &rates, 2.02)[0];
+        let expected = if counts { rate + vector([0.0, 0.0, 1.0]) } else { rate };
+        assert!((mean - expected).norm() < 1e-12, "{place}: {mean}");
+    }
+    let nearest = at_nodes(&[near], &times, &vec![rate; times.len()], 1e-3)[0];
+    assert!((nearest - rate).norm() < 1e-12);
+}
+
+/// The momentum of a free body stays in space: nodes along its motion tell its tensor, with a start of any attitude.
+#[test]
+fn a_momentum_that_stays_tells_a_first_tensor() {
+    let motions = [(vector([0.5, 0.8, -0.4]), 0.3), (vector([-0.7, 0.3, 0.6]), 1.2)].map(|(rate, turn)| {
+        let start = Start { attitude: Quat::exponential(Vec3([turn, 0.2, -0.4])), rate };
+        let motion = Motion::new(&x(), &start, 0.0).unwrap();
+        let at = |k: u32| {
+            let t = 0.5 * f64::from(k);
+            let moved = motion.at(t).unwrap();
+            Node { time: t, attitude: moved.attitude, rate: moved.rate, variance: 0.0 }
+        };
+        (0..30).map(at).collect::<Vec<Node>>()
+    });
+    assert!((tensor_of(&motions, 0.0).unwrap() - x()).amax() < 1e-10);
+    assert!((tensor_of(&motions[..1], 0.0).unwrap() - x()).amax() < 1e-9);
 }
 
 /// Noise of attitudes is read to its own scatter, also where single ones stand far out.
