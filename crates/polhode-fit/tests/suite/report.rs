@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_fit::{
-    Disturbances, Estimate, FitError, Gyroscope, Method, Poses, Prior, Record, Settings, TorqueModel,
+    Disturbances, Estimate, FitError, Gyroscope, Known, Method, Poses, Prior, Record, Settings, TorqueModel,
     TorqueNoise, fit, fit_poses, simulate_poses, simulate_with,
 };
 
@@ -118,6 +118,7 @@ fn attitudes_tell_their_drag_with_its_gain() {
     assert!((of_drag.gain / exact.torque.gain.unwrap() - 1.0).abs() < 1e-9 && none.gain == 0.0);
     let attitudes = exact.attitudes.as_ref().unwrap();
     assert!((attitudes.noise_sigma / 3e-3 - 1.0).abs() < 0.15 && attitudes.left_out == 0);
+    assert!(exact.noise_sigma == 0.0 && exact.per_segment[0].noise_sigma == 0.0);
     assert!((exact.residuals[0].mean_square - 1.0).abs() < 0.05 && exact.residuals[0].times.len() == 301);
     assert!((exact.residuals[0].times[300] - 30.0).abs() < 1e-9 && exact.residuals[0].times[0].abs() < 1e-9);
 
@@ -126,6 +127,10 @@ fn attitudes_tell_their_drag_with_its_gain() {
     let e = fit_poses(&measured, &settings).unwrap();
     assert!(e.method == Method::Smoother && e.torque.coefficients.len() == 1 && !e.torque.is_chosen);
     near(&e);
+    // a torque that was asked for is compared with none
+    assert!(e.torque.gain.is_none() && e.torque.ratios_without.is_none());
+    assert!((e.attitudes.as_ref().unwrap().noise_sigma / 3e-3 - 1.0).abs() < 0.15 && e.noise_sigma == 0.0);
+    assert!((e.chi2_per_dof - 1.0).abs() < 0.3 && e.samples == 301 && e.segments == 1);
     // −c |ω| J ω is the drag at the rates that the body has
     let c = &e.torque.coefficients[0];
     assert!((c.value * e.rms_rate / drag - 1.0).abs() < 0.5, "{c:?}");
@@ -167,4 +172,55 @@ fn a_prior_completes_a_spin_and_leaves_what_it_tells() {
         "{:?}",
         e.sigma_principal
     );
+}
+
+/// A trace scales the covariance of the shape by its square; a moment that is known about an axis leaves no variance there.
+#[test]
+fn known_sizes_scale_the_covariance_of_the_shape() {
+    let axis = Vector3::new(0.6, 0.0, 0.8);
+    let along = nalgebra::SMatrix::<f64, 6, 1>::new(0.36, 0.0, 0.64, 0.0, 2.0 * 0.48, 0.0);
+    let moment = axis.dot(&(body().tensor() * axis));
+    let measured = poses(&Disturbances::default(), 3e-3, 6);
+    let rates = record(&Disturbances::default(), 3e-3, &[30], 4);
+    let fits: [&dyn Fn(&Settings) -> Estimate; 2] =
+        [&|settings| fit(&rates, settings).unwrap(), &|settings| fit_poses(&measured, settings).unwrap()];
+    for fit in fits {
+        let of_trace = fit(&Settings::default().with_known(Known::Trace(5.6)));
+        let (own, shape) = (of_trace.inertia_covariance.unwrap(), of_trace.covariance * (5.6 * 5.6));
+        assert!((own - shape).amax() < 1e-9 * shape.amax());
+        let of_moment =
+            fit(&Settings::default().with_known(Known::Moment { axis: axis * 2.0, value: moment }));
+        let (tensor, covariance) =
+            (of_moment.inertia.unwrap().tensor(), of_moment.inertia_covariance.unwrap());
+        assert!((axis.dot(&(tensor * axis)) / moment - 1.0).abs() < 1e-12);
+        assert!(along.dot(&(covariance * along)) < 1e-6 * covariance.amax());
+        // the other entries are right within their deviations
+        for (k, truth) in [1.0, 2.0, 2.6].into_iter().enumerate() {
+            assert!(
+                (tensor[(k, k)] - truth).abs() < 5.0 * covariance[(k, k)].sqrt() + 1e-12,
+                "{k}: {tensor}"
+            );
+        }
+    }
+}
+
+/// A prior that attitudes exclude is refused with both tensors, and one that agrees with them joins them.
+#[test]
+fn attitudes_refuse_a_prior_that_they_exclude() {
+    let measured = poses(&Disturbances::default(), 3e-3, 6);
+    let right = Settings::default().with_prior(Prior::relative(body().tensor(), 0.01));
+    let e = fit_poses(&measured, &right).unwrap();
+    let free = fit_poses(&measured, &Settings::default()).unwrap();
+    near(&e);
+    assert!(e.prior.unwrap().chi2 < 25.75 && e.prior.unwrap().dof == 5 && free.prior.is_none());
+    assert!((0..3).all(|k| e.sigma_principal[k] <= free.sigma_principal[k] * 1.001));
+    let wrong = Inertia::from_moments([2.0, 1.0, 2.6]).unwrap().tensor();
+    for settings in [Settings::default(), Settings::default().with_torque(TorqueModel::Quadratic)] {
+        let settings = settings.with_prior(Prior::relative(wrong, 0.01));
+        let Err(FitError::PriorContradicted { prior, record, dof: 5, .. }) = fit_poses(&measured, &settings)
+        else {
+            panic!()
+        };
+        assert!((prior[0] - 2.0 / 5.6).abs() < 1e-12 && (record[0] - 1.0 / 5.6).abs() < 0.01);
+    }
 }

@@ -81,6 +81,9 @@ fn spikes_are_left_out_of_a_calibration() {
     let without = calibrate_wheel(&record, &body, &Settings::default()).unwrap();
     assert!((without.inertia - WHEEL).abs() < 5.0 * without.sigma && without.sigma < 0.05 * WHEEL);
     assert!((without.noise_sigma / 1e-3 - 1.0).abs() < 0.1 && without.samples < 1001);
+    // of a radius that is given
+    let given = calibrate_wheel(&record, &body, &Settings::default().with_radius(0.7)).unwrap();
+    assert!((given.radius - 0.7).abs() < 1e-12 && (given.inertia - WHEEL).abs() < 5.0 * given.sigma);
     let kept = Settings::default().with_leave_out_spikes(false);
     let with = calibrate_wheel(&record, &body, &kept);
     assert!(with.is_err() || with.is_ok_and(|with| with.samples == 1001 && with.sigma > 5.0 * without.sigma));
