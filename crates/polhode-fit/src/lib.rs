@@ -55,6 +55,8 @@ mod simulate;
 mod smoothed;
 mod solve;
 mod sparse;
+#[cfg(test)]
+mod tests;
 mod thresholds;
 mod units;
 mod verdict;

@@ -8,3 +8,6 @@ pub(crate) mod motions;
 pub(crate) mod nearest_motion;
 pub(crate) mod planned;
 pub(crate) mod sensitivity;
+
+#[cfg(test)]
+mod tests;

@@ -29,3 +29,6 @@ pub(crate) mod warning;
 mod wheels;
 
 pub use fit::fit_carrier;
+
+#[cfg(test)]
+mod tests;

@@ -200,3 +200,6 @@ fn radius(stretches: &[Stretch], speed: f64) -> f64 {
     let mean = stretches.iter().map(Stretch::duration).sum::<f64>() / intervals.max(1) as f64;
     (SAMPLES_PER_TEST * mean).max(1.0 / speed)
 }
+
+#[cfg(test)]
+mod tests;

@@ -32,3 +32,6 @@ pub(crate) mod profile;
 pub(crate) mod sums;
 pub(crate) mod track;
 pub(crate) mod wheels;
+
+#[cfg(test)]
+mod tests;

@@ -156,3 +156,139 @@ fn fill(square: &mut [f64], size: usize) {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{DMatrix, DVector};
+    use polhode::num::Random;
+    use polhode::rotation::Quat;
+
+    /// Of two stretches, of which the first and the last `zeros` unknowns are in none of the readings.
+    fn stretches(zeros: core::ops::Range<usize>) -> [Sums; 2] {
+        let mut random = Random::new(4);
+        [1.0, 0.5].map(|size| {
+            let mut rows = SMatrix::<f64, 24, ALL>::from_fn(|_, _| size * random.normal());
+            zeros.clone().for_each(|k| rows.column_mut(k).fill(0.0));
+            let residuals = SVector::<f64, 24>::from_fn(|_, _| random.normal());
+            Sums { matrix: rows.tr_mul(&rows), gradient: rows.tr_mul(&residuals) }
+        })
+    }
+
+    /// The equations of all starts and of what is shared, the starts first.
+    fn whole(all: &[Sums; 2], damping: f64) -> (DMatrix<f64>, DVector<f64>) {
+        let place = |stretch: usize, k: usize| if k < OWN { OWN * stretch + k } else { OWN + k };
+        let (mut matrix, mut gradient) =
+            (DMatrix::zeros(2 * OWN + COMMON, 2 * OWN + COMMON), DVector::zeros(2 * OWN + COMMON));
+        for (stretch, sums) in all.iter().enumerate() {
+            for i in 0..ALL {
+                gradient[place(stretch, i)] += sums.gradient[i];
+                for k in 0..ALL {
+                    let grown = if i == k { 1.0 + damping } else { 1.0 };
+                    matrix[(place(stretch, i), place(stretch, k))] += sums.matrix[(i, k)] * grown;
+                }
+            }
+        }
+        (matrix, gradient)
+    }
+
+    fn model(drag: Option<f64>) -> Model {
+        let x = Coordinates::new(0.1, -0.05, 0.02, 0.0, 0.03);
+        Model { x, alignment: Quat::identity(), is_aligned: true, drag, starts: Vec::new() }
+    }
+
+    /// The step of all unknowns, and what the tensor alone tells, as by the equations of everything together.
+    #[test]
+    fn starts_that_are_taken_out_are_at_their_best() {
+        let all = stretches(0..0);
+        let first = 2 * OWN;
+        for damping in [0.0, 0.3] {
+            let (matrix, gradient) = whole(&all, damping);
+            let reduced = Reduced::new(&all, None, damping).unwrap();
+            let (step, expected) =
+                (reduced.step().unwrap(), matrix.clone().cholesky().unwrap().solve(&gradient));
+            let found =
+                step.starts.iter().flat_map(|start| start.iter().copied()).chain(step.common.iter().copied());
+            let apart = DVector::from_iterator(first + COMMON, found) - &expected;
+            assert!(apart.amax() < 1e-12 && (step.gain / expected.dot(&gradient) - 1.0).abs() < 1e-12);
+
+            let covariance = matrix.clone().try_inverse().unwrap();
+            let of_tensor: Form = covariance.fixed_view::<5, 5>(first, first).into_owned();
+            let form = reduced.of_tensor().unwrap();
+            assert!((form * of_tensor - Form::identity()).amax() < 1e-11);
+            // F Δx is the gradient where everything else is at its best
+            let dx: Coordinates = expected.fixed_rows::<5>(first).into_owned();
+            assert!((reduced.gradient_of_tensor().unwrap() - form * dx).amax() < 1e-10 * form.amax());
+
+            // everything else follows a change of the coordinates: H_rr u = −H_rx x
+            let x = Coordinates::new(0.3, -0.1, 0.2, 0.5, -0.4);
+            let followed = reduced.following(&x).unwrap();
+            let rest: Vec<usize> = (0..first).chain(first + 5..first + COMMON).collect();
+            let own = DMatrix::from_fn(rest.len(), rest.len(), |i, k| matrix[(rest[i], rest[k])]);
+            let mixed = DMatrix::from_fn(rest.len(), 5, |i, k| matrix[(rest[i], first + k)]);
+            let expected = -own.cholesky().unwrap().solve(&(mixed * x));
+            let found = followed.starts.iter().flat_map(|start| start.iter().copied());
+            let found = found.chain(followed.common.iter().skip(5).copied());
+            assert!((DVector::from_iterator(rest.len(), found) - expected).amax() < 1e-11);
+            assert_eq!(followed.common.fixed_rows::<5>(0).into_owned(), x);
+        }
+    }
+
+    /// A pull is a sum of squares beside those of the readings: its gradient and curvature are added.
+    #[test]
+    fn a_pull_is_a_further_sum_of_squares() {
+        let all = stretches(0..0);
+        let information = Form::from_fn(|i, k| if i == k { 40.0 } else { 3.0 });
+        let centre = Coordinates::new(0.3, 0.1, -0.2, 0.05, 0.0);
+        let pull = Pull { information, centre, drag: 7.0 };
+        for drag in [Some(0.2), None] {
+            let at = model(drag);
+            let (mut matrix, mut gradient) = whole(&all, 0.0);
+            // minus half the gradient of the squares, by differences
+            let h = 1e-4;
+            for k in 0..5 {
+                let moved = |by: f64| {
+                    let mut at = model(drag);
+                    at.x[k] += by;
+                    pull.squares(&at)
+                };
+                gradient[2 * OWN + k] -= (moved(h) - moved(-h)) / (4.0 * h);
+            }
+            let mut own = matrix.fixed_view_mut::<5, 5>(2 * OWN, 2 * OWN);
+            own += information;
+            if let Some(drag) = drag {
+                let last = 2 * OWN + COMMON - 1;
+                matrix[(last, last)] += 7.0;
+                gradient[last] -= 7.0 * drag;
+            }
+            let expected = matrix.cholesky().unwrap().solve(&gradient);
+            let found = Reduced::new(&all, Some((&pull, &at)), 0.0).unwrap().step().unwrap();
+            assert!(
+                (DVector::from_column_slice(found.common.as_slice()) - expected.rows(2 * OWN, COMMON)).amax()
+                    < 1e-9
+            );
+            let off = at.x - centre;
+            let squares = off.dot(&(information * off)) + drag.map_or(0.0, |drag| 7.0 * drag * drag);
+            assert!((pull.squares(&at) / squares - 1.0).abs() < 1e-14);
+        }
+    }
+
+    /// What no reading depends on stays where it is, and changes nothing of the rest.
+    #[test]
+    fn unknowns_of_no_reading_stay_where_they_are() {
+        for zeros in [0..3, OWN + 5..OWN + 8, ALL - 1..ALL] {
+            let all = stretches(zeros.clone());
+            let step = Reduced::new(&all, None, 0.0).unwrap().step().unwrap();
+            let (matrix, gradient) = whole(&all, 0.0);
+            let kept: Vec<usize> = (0..matrix.nrows()).filter(|k| matrix[(*k, *k)] > 0.0).collect();
+            let own = DMatrix::from_fn(kept.len(), kept.len(), |i, k| matrix[(kept[i], kept[k])]);
+            let expected =
+                own.cholesky().unwrap().solve(&DVector::from_fn(kept.len(), |i, _| gradient[kept[i]]));
+            let found: Vec<f64> = step.starts.iter().flatten().chain(&step.common).copied().collect();
+            for (k, value) in found.iter().enumerate() {
+                let own = kept.iter().position(|kept| *kept == k).map_or(0.0, |place| expected[place]);
+                assert!((value - own).abs() < 1e-11, "{zeros:?} {k}");
+            }
+        }
+    }
+}

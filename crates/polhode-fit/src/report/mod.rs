@@ -24,3 +24,6 @@ pub(crate) mod systematic;
 pub(crate) mod torque_free;
 pub(crate) mod warning;
 pub(crate) mod warnings;
+
+#[cfg(test)]
+mod tests;

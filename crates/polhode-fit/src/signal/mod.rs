@@ -10,3 +10,6 @@ pub(crate) mod quadrature;
 pub(crate) mod stretch;
 pub(crate) mod terms;
 pub(crate) mod test_functions;
+
+#[cfg(test)]
+mod tests;

@@ -165,3 +165,106 @@ pub(super) fn smoothed(kept: &[Kept], links: &[Link], p: &SVector<f64, ALL>) -> 
     }
     moved
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{DMatrix, DVector};
+    use polhode::num::Random;
+    use polhode::rotation::{Quat, Vec3};
+
+    use crate::columns::column::Unknowns;
+    use crate::columns::sets::torque_columns;
+    use crate::physical::coordinates::Coordinates;
+    use crate::settings::torque::TorqueModel;
+
+    /// Filter and smoother against the normal distribution of all samples at once: attitudes off a path that is no motion, one of them not
+    /// used, under a constant torque and torque noise of both shapes.
+    #[test]
+    fn filter_and_smoother_are_the_normal_distribution_of_all_samples() {
+        let mut random = Random::new(12);
+        let columns = torque_columns(TorqueModel::Constant);
+        let mut at = Unknowns::at(Coordinates::new(0.05, 0.02, 0.01, -0.03, 0.02), &columns);
+        at.c.iter_mut().for_each(|c| *c = 0.02);
+        let law = Law::new(&at, &columns).unwrap();
+        let times: Vec<f64> = vec![-1.0, -0.6, -0.1, 0.3, 0.4, 1.0];
+        let count = times.len();
+        let mut start = |t: &f64| {
+            let turn = Vec3::from(Vector3::new(0.3, 0.8, -0.2) * *t + random.normal_vector() * 0.05);
+            Start {
+                attitude: Quat::exponential(turn),
+                rate: Vector3::new(0.3, 0.8, -0.2) + random.normal_vector() * 0.05,
+            }
+        };
+        let path: Vec<Start> = times.iter().map(&mut start).collect();
+        let attitudes: Vec<Quat<f64>> = path
+            .iter()
+            .map(|at| at.attitude * Quat::exponential(Vec3::from(random.normal_vector() * 0.1)))
+            .collect();
+        let mut used = vec![true; count];
+        used[2] = false;
+        let track = Track { times, attitudes, rates: Vec::new(), used };
+        let links = links(&track, &path, &law).unwrap();
+        for level in [
+            Level { torque: 0.7, shape: 0 },
+            Level { torque: 0.4, shape: 1 },
+            Level { torque: 0.0, shape: 0 },
+        ] {
+            // δ at each sample: a mean, its derivative by (δ₀, p), and the covariance of all of them
+            let (size, mut mean, mut by) =
+                (6 * count, DVector::zeros(6 * count), DMatrix::zeros(6 * count, ALL));
+            by.view_mut((0, 0), (6, 6)).fill_with_identity();
+            let mut flows = DMatrix::identity(size, size);
+            let mut acting = DMatrix::zeros(size, size);
+            for (k, link) in links.iter().enumerate() {
+                let (from, to) = (6 * k, 6 * (k + 1));
+                let flow = link.by.fixed_view::<6, 6>(0, 0).into_owned();
+                let moved = flow * mean.fixed_rows::<6>(from) + link.left;
+                mean.fixed_rows_mut::<6>(to).copy_from(&moved);
+                let mut slope = flow * by.fixed_view::<6, ALL>(from, 0);
+                let mut shared = slope.fixed_view_mut::<6, SHARED>(0, 6);
+                shared += link.by.fixed_view::<6, SHARED>(0, 6);
+                by.view_mut((to, 0), (6, ALL)).copy_from(&slope);
+                let carried = flow * flows.view((from, 0), (6, size));
+                let mut own = flows.view_mut((to, 0), (6, size));
+                own.copy_from(&carried);
+                own.view_mut((0, to), (6, 6)).fill_with_identity();
+                acting.view_mut((to, to), (6, 6)).copy_from(&(link.noise[level.shape] * level.torque));
+            }
+            let covariance = &flows * acting * flows.transpose();
+            let seen: Vec<usize> =
+                (0..count).filter(|k| track.used[*k]).flat_map(|k| 6 * k..6 * k + 3).collect();
+            let off: Vec<f64> = (0..count)
+                .filter(|k| track.used[*k])
+                .flat_map(|k| (path[k].attitude.conjugate() * track.attitudes[k]).logarithm().0)
+                .collect();
+            let of = |i: usize, k: usize| covariance[(seen[i], seen[k])] + if i == k { 1.0 } else { 0.0 };
+            let s = DMatrix::from_fn(seen.len(), seen.len(), of).cholesky().unwrap();
+            let h = DMatrix::from_fn(seen.len(), ALL, |i, k| by[(seen[i], k)]);
+            let y = DVector::from_fn(seen.len(), |i, _| off[i] - mean[seen[i]]);
+
+            let mut kept = Vec::new();
+            let sums = filter(&track, &path, &links, level, |at| kept.push(at)).unwrap();
+            assert!((sums.matrix - h.tr_mul(&s.solve(&h))).amax() < 1e-11, "{level:?}");
+            assert!((sums.right - h.tr_mul(&s.solve(&y))).amax() < 1e-11, "{level:?}");
+            assert!((sums.squares - y.dot(&s.solve(&y))).abs() < 1e-11, "{level:?}");
+            let determinant: f64 = 2.0 * s.l().diagonal().map(libm::log).sum();
+            assert!((sums.log_determinant - determinant).abs() < 1e-11, "{level:?}");
+            assert_eq!((sums.count, kept.len()), (15.0, count));
+
+            let p = SVector::<f64, ALL>::from_fn(|k, _| {
+                0.02 * (1.0 + k as f64) * if k % 2 == 0 { 1.0 } else { -1.0 }
+            });
+            let left = &y - &h * p;
+            let across = DMatrix::from_fn(size, seen.len(), |i, k| covariance[(i, seen[k])]);
+            let expected = &mean + &by * p + across * s.solve(&left);
+            for (k, moved) in smoothed(&kept, &links, &p).iter().enumerate() {
+                assert!((moved - expected.fixed_rows::<6>(6 * k)).amax() < 1e-11, "{level:?} {k}");
+            }
+            let whitened: Vec<Vector3<f64>> = kept.iter().filter_map(|at| at.whitened(&p)).collect();
+            let squares: f64 = whitened.iter().map(Vector3::norm_squared).sum();
+            assert!(whitened.len() == 5 && (squares - left.dot(&s.solve(&left))).abs() < 1e-11, "{level:?}");
+            assert_eq!(links[1].left_of_rate(), links[1].left.fixed_rows::<3>(3).into_owned());
+        }
+    }
+}

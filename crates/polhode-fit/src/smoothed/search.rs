@@ -422,3 +422,138 @@ fn of_tensor(sums: &Sums, coefficients: usize) -> Option<Form> {
     let taken = mixed.tr_mul(&own.cholesky()?.solve(&mixed));
     Some(sums.matrix.fixed_view::<5, 5>(6, 6) - Form::from_fn(|i, k| taken[(i, k)]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use polhode::inertia::Inertia;
+    use polhode::num::Random;
+
+    use crate::columns::sets::torque_columns;
+    use crate::settings::torque::TorqueModel;
+    use crate::simulate::{Disturbances, Gyroscope, simulate_poses};
+
+    const SIGMA: f64 = 3e-3;
+
+    fn x() -> Coordinates {
+        Coordinates::new(-0.06, 0.02, 0.03, -0.02, 0.04)
+    }
+
+    /// Attitudes of the body `x`, whose trace is 1, under a torque.
+    fn tracks(by: &Disturbances) -> Vec<Track> {
+        let body = Inertia::from_tensor(tensor(&x())).unwrap();
+        let starts =
+            [Vector3::new(0.5, 0.8, -0.4), Vector3::new(-0.7, 0.3, 0.6), Vector3::new(0.2, -0.6, 0.8)];
+        let mut random = Random::new(14);
+        let each = starts.map(|start| {
+            let times: Vec<f64> = (0..=120).map(|k| 0.1 * f64::from(k) - 6.0).collect();
+            // torque noise acts from time 0 on
+            let later: Vec<f64> = times.iter().map(|t| t + 6.0).collect();
+            let made =
+                simulate_poses(&body, start, &later, by, &Gyroscope::default(), SIGMA, &mut random).unwrap();
+            let attitudes = made.attitudes.iter().map(|q| Quat::from(*q)).collect();
+            Track { attitudes, rates: Vec::new(), used: vec![true; times.len()], times }
+        });
+        each.into()
+    }
+
+    fn noise(torque: TorqueNoise) -> Noise {
+        Noise { attitude: None, torque }
+    }
+
+    fn near(found: &Coordinates, information: &Form) -> f64 {
+        let off = found - x();
+        off.dot(&(information * off))
+    }
+
+    /// The information of all is the sum of what each stretch tells, and without one of them the others say what they say alone.
+    #[test]
+    fn stretches_add_up_and_tell_the_tensor_without_each_other() {
+        let tracks = tracks(&Disturbances::default());
+        let found = first(&tracks, x(), &[], noise(TorqueNoise::Fitted)).unwrap();
+        assert!(found.is_still && found.level.torque == 0.0);
+        // 363 attitudes, three starts of six numbers and five of the tensor
+        assert_eq!(found.dof, f64::from(3 * 363 - 18 - 5));
+        assert!((found.variance.sqrt() / SIGMA - 1.0).abs() < 0.1, "{}", found.variance.sqrt());
+        let information = Form::from_fn(|i, k| found.information[(i, k)]);
+        let sum: Form = found.of_each.iter().sum();
+        assert!((sum - information).amax() < 1e-9 * information.amax());
+        assert!((found.covariance().unwrap() * information - Form::identity()).amax() < 1e-9);
+        assert!(near(&found.at.x, &information) < 25.75);
+        // innovations are white, of variance 1
+        let squares = found.whitened.iter().flatten().map(|(_, left)| left.norm_squared()).sum::<f64>();
+        assert!((squares / found.dof - 1.0).abs() < 1e-9, "{squares}");
+        for (k, without) in found.without.iter().enumerate() {
+            let (step, covariance) = without.unwrap();
+            let others: Vec<Track> =
+                tracks.iter().enumerate().filter(|(i, _)| *i != k).map(|(_, track)| track.clone()).collect();
+            let alone = first(&others, found.at.x, &[], noise(TorqueNoise::Fitted)).unwrap();
+            let own = covariance.try_inverse().unwrap();
+            let apart = found.at.x + step - alone.at.x;
+            assert!(apart.dot(&(own * apart)) < 0.01, "{k}: {}", apart.dot(&(own * apart)));
+            let ratio =
+                alone.covariance().unwrap().trace() / alone.variance * found.variance / covariance.trace();
+            assert!((ratio - 1.0).abs() < 0.05, "{k}: {ratio}");
+        }
+        assert!(found.unexplained() < 1e-6, "{}", found.unexplained());
+        // twice the log-likelihood of normal innovations
+        let all = 3.0 * 363.0;
+        let expected = -0.5 * (found.dof + all * libm::log(found.variance));
+        assert!(
+            (found.likelihood - expected).abs() < 1e-6 * expected.abs(),
+            "{} {expected}",
+            found.likelihood
+        );
+    }
+
+    /// A torque that acts is found by the model that has it, to its deviations, and gains what the model without it lacks.
+    #[test]
+    fn a_torque_is_found_from_the_search_without_it() {
+        let torque = Vector3::new(4e-3, -2e-3, 3e-3);
+        let tracks = tracks(&Disturbances::default().with_torque(torque));
+        let none = first(&tracks, x(), &[], noise(TorqueNoise::Fitted)).unwrap();
+        assert!(none.level.torque > 0.0, "torque noise stands in for a torque");
+        let columns = torque_columns(TorqueModel::Constant);
+        let with = none.with(&columns, noise(TorqueNoise::Fitted)).unwrap();
+        assert!(with.is_still && with.level.torque == 0.0 && with.likelihood > none.likelihood + 10.0);
+        let covariance = with.information.clone().try_inverse().unwrap();
+        for k in 0..3 {
+            let sigma = covariance[(5 + k, 5 + k)].sqrt();
+            assert!((with.at.c[k] - torque[k]).abs() < 5.0 * sigma && sigma < 1e-3, "{k}: {}", with.at.c[k]);
+        }
+        // the search with a torque begins at the values of that before
+        let again = with.with(&columns, noise(TorqueNoise::None)).unwrap();
+        assert!((again.at.x - with.at.x).amax() < 1e-6 && (again.at.c[0] - with.at.c[0]).abs() < 1e-6);
+    }
+
+    /// Torque noise of the simulation is found to its scatter, and what it makes of the rates is not explained.
+    #[test]
+    fn torque_noise_is_found_where_it_acts() {
+        let density = 0.01;
+        let made = Disturbances::default().with_torque_noise(density);
+        let tracks = tracks(&made);
+        let found = first(&tracks, x(), &[], noise(TorqueNoise::Fitted)).unwrap();
+        // of the torque, N m √s, or of the angular acceleration that it makes
+        let squared = tensor(&x()).try_inverse().map_or(0.0, |inverse| (inverse * inverse).trace() / 3.0);
+        let acceleration = density * density * squared;
+        let level = match found.level.shape {
+            0 => found.level.torque * found.variance / acceleration,
+            _ => found.level.torque * found.variance / 9.0 / (density * density),
+        };
+        assert!(found.is_still && (0.5..2.0).contains(&level), "{level}");
+        assert!((found.variance.sqrt() / SIGMA - 1.0).abs() < 0.15, "{}", found.variance.sqrt());
+        let information = Form::from_fn(|i, k| found.information[(i, k)]);
+        assert!(near(&found.at.x, &information) < 25.75);
+        let share = found.unexplained();
+        assert!((0.001..0.5).contains(&share), "{share}");
+        // given its level, the search stays there
+        let given = first(&tracks, x(), &[], noise(TorqueNoise::Given(acceleration))).unwrap();
+        let own = given.level.torque * given.variance / acceleration;
+        assert!(given.is_still && given.level.shape == 0 && (own - 1.0).abs() < 0.05, "{own}");
+        // of motions under it a search without it says how much it lacks
+        let free = first(&tracks, x(), &[], noise(TorqueNoise::None)).unwrap();
+        let gain =
+            gain_of_noise(&tracks, free.at.clone(), &[], free.paths.clone(), noise(TorqueNoise::Fitted));
+        assert!(gain.unwrap() > 20.0, "{gain:?}");
+    }
+}

@@ -86,10 +86,10 @@ impl Linearised {
             let w = self.terms.rate(&group.reading);
             let drag = Matrix3::identity() * self.terms.drag + slope(&w) * self.terms.quadratic;
             let k = bases.map(|b| cross_derivative(&b, &w) + b * drag);
-            // Σ tr Z D_l D_kᵀ with D_k = −φ' B_k + φ K_k
+            // Σ tr D_kᵀ Z D_l with D_k = −φ' B_k + φ K_k
             for l in 0..5 {
-                let from_slope = bases[l] * aa - k[l] * ba;
-                let from_value = k[l] * bb - bases[l] * ab;
+                let from_slope = aa * bases[l] - ab * k[l];
+                let from_value = bb * k[l] - ba * bases[l];
                 for m in 0..=l {
                     // tr(M Nᵀ) is the entry by entry product
                     sum[(l, m)] += group.square * (from_slope.dot(&bases[m]) + from_value.dot(&k[m]));

@@ -33,3 +33,6 @@ pub(crate) mod rows;
 pub(crate) mod stacked;
 pub(crate) mod triangle;
 pub(crate) mod weak_estimate;
+
+#[cfg(test)]
+mod tests;

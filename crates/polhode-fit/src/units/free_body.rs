@@ -201,4 +201,74 @@ mod tests {
         }
         assert_eq!((moved.drag, moved.constant), (step[6], [step[7], step[8], step[9]]));
     }
+
+    fn example() -> FreeBody {
+        let j = Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45);
+        let body = FreeBody::known(&j).unwrap();
+        assert!((body.tensor() / body.tensor().trace() - j).amax() < 1e-14);
+        FreeBody { drag: 0.05, constant: [0.01, -0.02, 0.03], ..body }
+    }
+
+    /// The residual ω' + f J⁻¹ (ω × J ω) + k ω − a of a motion, and its derivatives by L, k and a.
+    #[test]
+    fn coefficients_are_those_of_the_equation_and_slopes_their_differences() {
+        let (body, factor) = (example(), 1.7);
+        let (w, slope) = (nalgebra::Vector3::new(0.3, -0.8, 0.5), nalgebra::Vector3::new(0.1, 0.2, -0.4));
+        let squares = crate::physical::coordinates::ENTRIES.map(|(a, b)| w[a] * w[b]);
+        let features: Vec<f64> = slope.iter().chain(&squares).chain(&w).copied().chain([1.0]).collect();
+        let features = SVector::<f64, FEATURES>::from_column_slice(&features);
+        let j = body.tensor();
+        let turned = j.try_inverse().unwrap() * w.cross(&(j * w)) * factor;
+        let expected = slope + turned + w * body.drag - nalgebra::Vector3::from(body.constant);
+        assert!((body.coefficients(factor).unwrap() * features - expected).amax() < 1e-14);
+        let gram = features * features.transpose();
+        assert!((body.squares_by(&gram, factor).unwrap() - expected.norm_squared()).abs() < 1e-14);
+
+        let slopes = body.slopes(factor).unwrap();
+        let h = 1e-6;
+        for (k, slope) in slopes.iter().enumerate() {
+            let moved = |by: f64| {
+                let mut body = body.clone();
+                match k {
+                    0..6 => body.root[ENTRIES_OF_ROOT[k]] += by,
+                    6 => body.drag += by,
+                    _ => body.constant[k - 7] += by,
+                }
+                body.coefficients(factor).unwrap()
+            };
+            let difference = (moved(h) - moved(-h)) / (2.0 * h);
+            assert!((difference - slope).amax() < 1e-7, "{k}");
+        }
+    }
+
+    /// From motions that a body with drag and a constant acceleration has, least squares find it with its factor, and leave nothing.
+    #[test]
+    fn the_nearest_body_is_the_one_that_moves_so() {
+        let (body, mut random) = (example(), polhode::num::Random::new(3));
+        for factor in [1.0, 0.6] {
+            let mut gram = Gram::zeros();
+            let j = body.tensor();
+            for _ in 0..60 {
+                let w = random.normal_vector();
+                let slope = nalgebra::Vector3::from(body.constant)
+                    - w * body.drag
+                    - j.try_inverse().unwrap() * w.cross(&(j * w)) * factor;
+                let squares = crate::physical::coordinates::ENTRIES.map(|(a, b)| w[a] * w[b]);
+                let all: Vec<f64> = slope.iter().chain(&squares).chain(&w).copied().chain([1.0]).collect();
+                let features = SVector::<f64, FEATURES>::from_column_slice(&all);
+                gram += features * features.transpose();
+            }
+            let found = FreeBody::nearest(&gram, factor).unwrap();
+            let shape = |body: &FreeBody| body.tensor() / body.tensor().trace();
+            assert!(found.squares < 1e-6, "{factor}: {:e}", found.squares);
+            assert!((shape(&found) - shape(&body)).amax() < 1e-3, "{factor}");
+            assert!(
+                (found.drag - body.drag).abs() < 1e-3 && (found.constant[1] + 0.02).abs() < 1e-3,
+                "{factor}"
+            );
+            // without drag and acceleration the linear start alone misses it
+            let known = FreeBody::known(&j).unwrap();
+            assert!(known.squares_by(&gram, factor).unwrap() > 1e-3);
+        }
+    }
 }

@@ -161,3 +161,47 @@ fn add_products(gram: &mut Gram, features: &[f64]) {
     }
     gram.fill_upper_triangle_with_lower_triangle();
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::DMatrix;
+    use polhode::num::Random;
+
+    /// Products weighted by the covariance of the slopes of noise and of the overlaps of torque noise, with its determinant.
+    #[test]
+    fn weighted_products_are_those_of_the_dense_covariance() {
+        let mut random = Random::new(3);
+        let times: Vec<f64> = (0..200).map(|k| 0.1 * f64::from(k)).collect();
+        let rates = times.iter().map(|_| random.normal_vector()).collect();
+        let stretch = Stretch::new(times, rates);
+        let sums = Sums::new(core::slice::from_ref(&stretch), 1.0).unwrap();
+        let own = &sums.own[0];
+        let count = own.tests.count;
+        let (mut noise, mut slopes) = (DMatrix::<f64>::zeros(count, count), vec![Vector3::zeros(); count]);
+        for ((t, w), weight) in stretch.times.iter().zip(&stretch.rates).zip(&stretch.weights) {
+            let seen: Vec<(usize, f64, f64)> = Seen::new(&own.tests, *t).each().collect();
+            for (m, a, _) in &seen {
+                slopes[*m] -= w * (a * weight);
+                seen.iter().for_each(|(n, b, _)| noise[(*m, *n)] += a * b * weight * weight);
+            }
+        }
+        assert!((sums.noise * count as f64 / noise.trace() - 1.0).abs() < 1e-12);
+        let all: f64 = slopes.iter().map(Vector3::norm_squared).sum();
+        assert!((sums.sizes()[0] / all - 1.0).abs() < 1e-12 && sums.rows() == 3 * count);
+        assert!((sums.noise_share(0.2) / (0.2 * 3.0 * noise.trace() / all) - 1.0).abs() < 1e-12);
+        let features = DMatrix::from_row_slice(count, FEATURES, &own.features);
+        assert!((sums.plain() - features.tr_mul(&features)).amax() < 1e-9);
+        assert_eq!(sums.weighted().len(), 1 + TORQUES.len());
+        for (ratio, weighted) in core::iter::once(0.0).chain(TORQUES).zip(sums.weighted()) {
+            let overlaps = own.tests.overlaps();
+            let torque = ratio * noise.trace() / count as f64 / overlaps[0];
+            let of = |m: usize, n: usize| overlaps.get(m.abs_diff(n)).map_or(0.0, |overlap| torque * overlap);
+            let dense = (&noise + DMatrix::from_fn(count, count, of)).cholesky().unwrap();
+            let expected = features.tr_mul(&dense.solve(&features));
+            assert!((weighted.gram - &expected).amax() < 1e-6 * expected.amax(), "{ratio}");
+            let determinant: f64 = 6.0 * dense.l().diagonal().map(libm::log).sum();
+            assert!((weighted.log_determinant - determinant).abs() < 1e-6 * determinant.abs(), "{ratio}");
+        }
+    }
+}

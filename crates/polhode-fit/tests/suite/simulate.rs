@@ -195,3 +195,50 @@ fn what_cannot_be_simulated_is_refused_by_name() {
     let far = simulate_with(&body, Vector3::x(), &[1e9], &torque, &good, &mut Random::new(1));
     assert!(matches!(far, Err(SimulationError::TooFast { .. })));
 }
+
+/// Each number of the sensor and of what acts is refused by its name, where it is not finite, and where a size is negative.
+#[test]
+fn every_setting_of_a_simulation_is_checked_by_its_name() {
+    let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+    let refused = |by: &Disturbances, with: &Gyroscope| {
+        let found = simulate_with(&body, Vector3::x(), &[0.0, 1.0], by, with, &mut Random::new(1));
+        let Err(SimulationError::Setting { name, value, .. }) = found else { panic!("{found:?}") };
+        (name, value.is_nan())
+    };
+    let (free, good, nan) = (Disturbances::default(), Gyroscope::default(), f64::NAN);
+    let off = Vector3::new(0.0, 0.0, nan);
+    for (name, by) in [
+        ("the relative drag", free.clone().with_relative_drag(nan)),
+        ("a drag", free.clone().with_drag(off)),
+        ("a torque", free.clone().with_torque(off)),
+        ("the noise of the torque", free.clone().with_torque_noise(nan)),
+        ("a momentum of the wheel", free.clone().with_wheel(off)),
+        ("a change of the wheel's momentum", free.clone().with_wheel_rate(off)),
+    ] {
+        assert_eq!(refused(&by, &good), (name, true));
+    }
+    for (name, with) in [
+        ("the noise", good.clone().with_noise(nan)),
+        ("the offset", good.clone().with_offset(off)),
+        ("the walk of the offset", good.clone().with_offset_walk(nan)),
+        ("the scale error", good.clone().with_scale(nan)),
+        ("a scale error of an axis", good.clone().with_axis_scales(off)),
+        ("a misalignment", good.clone().with_misalignment(off)),
+        ("a time skew", good.clone().with_skew(off)),
+        ("the quantum", good.clone().with_quantum(nan)),
+        ("the share of spikes", good.clone().with_spikes(nan)),
+        ("the size of spikes", good.clone().with_spike_size(nan)),
+    ] {
+        assert_eq!(refused(&free, &with), (name, true));
+    }
+    for (by, with) in [
+        (free.clone().with_drag(-Vector3::y()), good.clone()),
+        (free.clone().with_torque_noise(-1.0), good.clone()),
+        (free.clone(), good.clone().with_offset_walk(-1.0)),
+        (free.clone(), good.clone().with_quantum(-1.0)),
+        (free.clone(), good.clone().with_spikes(-0.1)),
+        (free.clone(), good.clone().with_spike_size(-1.0)),
+    ] {
+        assert!(!refused(&by, &with).1);
+    }
+}

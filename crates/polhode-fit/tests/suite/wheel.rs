@@ -72,6 +72,23 @@ fn a_wheel_is_calibrated_to_its_deviation() {
     assert!((0.82..1.18).contains(&all), "{all}");
 }
 
+/// Spikes are left out of a calibration, and spoil it where they are kept.
+#[test]
+fn spikes_are_left_out_of_a_calibration() {
+    let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+    let spiky = Gyroscope::default().with_noise(1e-3).with_spikes(0.01).with_spike_size(2.0);
+    let record = spun(&body, &Disturbances::default(), &spiky, 20, &mut Random::new(83));
+    let without = calibrate_wheel(&record, &body, &Settings::default()).unwrap();
+    assert!((without.inertia - WHEEL).abs() < 5.0 * without.sigma && without.sigma < 0.05 * WHEEL);
+    assert!((without.noise_sigma / 1e-3 - 1.0).abs() < 0.1 && without.samples < 1001);
+    // of a radius that is given
+    let given = calibrate_wheel(&record, &body, &Settings::default().with_radius(0.7)).unwrap();
+    assert!((given.radius - 0.7).abs() < 1e-12 && (given.inertia - WHEEL).abs() < 5.0 * given.sigma);
+    let kept = Settings::default().with_leave_out_spikes(false);
+    let with = calibrate_wheel(&record, &body, &kept);
+    assert!(with.is_err() || with.is_ok_and(|with| with.samples == 1001 && with.sigma > 5.0 * without.sigma));
+}
+
 #[test]
 fn what_cannot_be_calibrated_is_refused() {
     let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();

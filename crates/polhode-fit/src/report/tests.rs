@@ -1,0 +1,264 @@
+//! Numbers and warnings of a report against simulations and differences, and what is said where a number passes its threshold.
+
+use nalgebra::{Matrix3, SMatrix, Vector3};
+use polhode::inertia::Inertia;
+use polhode::num::Random;
+use polhode::record::Record;
+
+use crate::estimator::fit;
+use crate::physical::coordinates::{Coordinates, Form, coordinates, eigen, tensor};
+use crate::report::answer::{Answer, ratios_of, sigmas};
+use crate::report::attitudes::AttitudeFit;
+use crate::report::estimate::{Estimate, Residuals};
+use crate::report::identifiability::{Identifiability, Undetermined};
+use crate::report::torque_free::{InvariantTrend, Whiteness, memory, trends};
+use crate::report::warning::Warning;
+use crate::report::warnings::{Doubts, of_answer, of_likelihood, of_smoothed};
+use crate::settings::Settings;
+use crate::settings::torque::TorqueModel;
+use crate::signal::stretch::Stretch;
+use crate::simulate::{Disturbances, Gyroscope, simulate_with};
+use crate::thresholds::poses::DOUBTFUL;
+use crate::thresholds::warnings::{APART, FAR, FEW, UNCERTAIN};
+
+fn body() -> Matrix3<f64> {
+    Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45)
+}
+
+fn rates(by: &Disturbances, sigma: f64, count: u32, random: &mut Random) -> (Vec<f64>, Vec<Vector3<f64>>) {
+    let times: Vec<f64> = (0..count).map(|k| 0.05 * f64::from(k)).collect();
+    let gyroscope = Gyroscope::default().with_noise(sigma);
+    let (body, start) = (Inertia::from_tensor(body()).unwrap(), Vector3::new(0.5, 0.8, -0.4));
+    let rates = simulate_with(&body, start, &times, by, &gyroscope, random).unwrap();
+    (times, rates)
+}
+
+/// Momentum falls by the drag and energy twice as fast, and both scatter as they say: by noise, and by torque noise.
+#[test]
+fn trends_of_momentum_and_energy_are_those_of_the_drag() {
+    let mut random = Random::new(31);
+    let (drag, density, sigma) = (0.01, 2e-3, 5e-3);
+    for is_noisy in [false, true] {
+        let density = if is_noisy { density } else { 0.0 };
+        let by = Disturbances::default().with_relative_drag(drag).with_torque_noise(density);
+        let (mut means, mut squares, count) = ([0.0; 2], [0.0; 2], 120);
+        for _ in 0..count {
+            let (times, rates) = rates(&by, sigma, 120, &mut random);
+            let s = [Stretch::new(times, rates)];
+            let torque = |_| Matrix3::identity() * (density * density);
+            let (momentum, energy) = trends(&s, &body(), sigma * sigma, torque);
+            for (k, (trend, truth)) in [(momentum, -drag), (energy, -2.0 * drag)].into_iter().enumerate() {
+                let z = (trend.rate - truth) / trend.sigma;
+                means[k] += z / f64::from(count);
+                squares[k] += z * z / f64::from(count);
+            }
+        }
+        // to √(1/120) = 0.09, and the mean square to √(2/120) = 0.13; a little of the drag is quadratic in time
+        assert!(means.iter().all(|mean| mean.abs() < 0.45), "{is_noisy}: {means:?}");
+        assert!(squares.iter().all(|square| (0.6..1.5).contains(square)), "{is_noisy}: {squares:?}");
+    }
+    let (times, rates) = rates(&Disturbances::default(), 0.0, 2, &mut random);
+    let (momentum, _) = trends(&[Stretch::new(times, rates)], &body(), 1e-6, |_| Matrix3::zeros());
+    assert!(!momentum.significant() && momentum.rate == 0.0, "two samples have no trend");
+}
+
+fn residuals(values: Vec<[f64; 3]>) -> Residuals {
+    let times = (0..values.len()).map(|k| k as f64).collect();
+    let squares: f64 = values.as_flattened().iter().map(|v| v * v).sum();
+    let mean_square = squares / (3 * values.len()) as f64;
+    Residuals { segment: 0, times, values, mean_square }
+}
+
+/// White residuals have no memory; what repeats has one, at the lag with which it does.
+#[test]
+fn residuals_remember_what_repeats() {
+    let mut random = Random::new(7);
+    let mut white = || -> Vec<[f64; 3]> { (0..400).map(|_| random.normal_vector().into()).collect() };
+    let (one, other) = (white(), white());
+    assert!(memory(&[residuals(one.clone()), residuals(other.clone())], 6).is_none());
+    let correlation = Whiteness::new([one.as_flattened(), other.as_flattened()].into_iter());
+    assert!(!correlation.significant() && (correlation.sigma - 1.0 / 2394.0_f64.sqrt()).abs() < 1e-12);
+    // half of each residual comes again three later
+    let mut repeated = one;
+    for k in 3..repeated.len() {
+        let [before, own] = [repeated[k - 3], repeated[k]].map(Vector3::from);
+        repeated[k] = (before * 0.5 + own * 0.75_f64.sqrt()).into();
+    }
+    let all = [residuals(repeated)];
+    assert!(memory(&all, 2).is_none() && memory(&all, 0).is_none());
+    let found = memory(&all, 3).unwrap();
+    // three components of a correlation of a half, 397 times
+    assert!(found.dof == 27 && (found.chi2 / (3.0 * 397.0 * 0.25 + 24.0) - 1.0).abs() < 0.25, "{found:?}");
+    let alternating: Vec<f64> = (0..300).map(|k| if (k / 3) % 2 == 0 { 1.0 } else { -1.0 }).collect();
+    let found = Whiteness::new([alternating.as_slice()].into_iter());
+    assert!(found.significant() && (found.correlation + 0.99).abs() < 1e-12, "{found:?}");
+}
+
+/// Deviations of moments, ratios and axes are those of tensors that are drawn from the covariance, to first order: by differences.
+#[test]
+fn deviations_of_the_answer_are_those_of_differences() {
+    let x = coordinates(&body());
+    let factor = Form::from_fn(|i, k| 1e-3 / (1.0 + ((3 * i + 2 * k) % 5) as f64));
+    let Answer { moments, v, axes, .. } = Answer::new(&x).unwrap();
+    let (sigma_principal, sigma_axes) = sigmas(&factor, &v, &moments);
+    let ratios = ratios_of(&x, &(factor * factor.transpose()));
+    let numbers = |x: &Coordinates| {
+        let (moments, turned) = eigen(tensor(x));
+        // the turn about axis k takes the next axis towards the one after it
+        let along = |k: usize| {
+            let (a, b) = ((k + 1) % 3, (k + 2) % 3);
+            let own = turned.column(a) * turned.column(a).dot(&v[a]).signum();
+            own.dot(&v[b])
+        };
+        [
+            moments[0],
+            moments[1],
+            moments[2],
+            moments[0] / moments[2],
+            moments[1] / moments[2],
+            along(0),
+            along(1),
+            along(2),
+        ]
+    };
+    let h = 1e-3;
+    let mut squares = [0.0; 8];
+    for by in factor.column_iter() {
+        let (above, below) = (numbers(&(x + by * h)), numbers(&(x - by * h)));
+        for k in 0..8 {
+            squares[k] += (above[k] - below[k]) * (above[k] - below[k]) / (4.0 * h * h);
+        }
+    }
+    let found = sigma_principal.into_iter().chain(ratios.map(|ratio| ratio.1)).chain(sigma_axes);
+    for (k, (found, square)) in found.zip(squares).enumerate() {
+        assert!((found / square.sqrt() - 1.0).abs() < 1e-5, "{k}: {found:e} {:e}", square.sqrt());
+    }
+    assert!((0..2).all(|k| (ratios[k].0 - moments[k] / moments[2]).abs() < 1e-12));
+    assert!((axes * Vector3::x() - v[0]).norm() < 1e-14);
+}
+
+fn clean() -> Estimate {
+    let (times, rates) = rates(&Disturbances::default(), 1e-3, 1200, &mut Random::new(5));
+    fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap()
+}
+
+/// Each number of an answer is warned of just beyond its threshold, by its value, and not before it.
+#[test]
+fn an_answer_is_warned_of_beyond_its_thresholds() {
+    let clean = clean();
+    assert!(clean.warnings.is_empty() && of_answer(&clean).is_empty(), "{:?}", clean.warnings);
+    let warned = |change: &dyn Fn(&mut Estimate)| {
+        let mut e = clean.clone();
+        change(&mut e);
+        of_answer(&e)
+    };
+    assert!(warned(&|e| e.pull = FAR * 0.99).is_empty());
+    assert_eq!(warned(&|e| e.pull = FAR * 1.01), [Warning::Contradiction { pull: FAR * 1.01 }]);
+    // the Frobenius norm counts each product twice
+    let spread = |share: f64| {
+        let variances =
+            [1.0, 2.0, 1.0, 0.5, 1.0, 0.5].map(|v| v / 8.0 * (share * UNCERTAIN) * (share * UNCERTAIN));
+        SMatrix::<f64, 6, 6>::from_diagonal(&variances.into())
+    };
+    assert!(warned(&|e| e.free_covariance = spread(0.999)).is_empty());
+    let found = warned(&|e| e.free_covariance = spread(1.001));
+    assert!(
+        matches!(found[..], [Warning::Uncertain { deviation }] if (deviation / UNCERTAIN - 1.001).abs() < 1e-9),
+        "{found:?}"
+    );
+    for (low, high) in [(0, 1), (1, 2)] {
+        let near = |share: f64| {
+            warned(&|e: &mut Estimate| {
+                e.sigma_principal = [1e-9; 3];
+                let gap = e.principal[high] - e.principal[low];
+                // the middle moment has a part in both
+                let outer = if low == 0 { low } else { high };
+                e.sigma_principal[outer] = 0.96 * gap / APART * share;
+                e.sigma_principal[1] = 0.28 * gap / APART * share;
+            })
+        };
+        assert!(near(0.99).is_empty());
+        assert_eq!(near(1.01), [Warning::EqualMoments { low: low + 1, high: high + 1 }]);
+    }
+    assert!(warned(&|e| e.dof = FEW).is_empty());
+    assert_eq!(warned(&|e| e.dof = FEW - 1), [Warning::FewEquations { dof: FEW - 1 }]);
+}
+
+/// What speaks against a likelihood is passed on with its numbers, each by itself.
+#[test]
+fn doubts_about_a_likelihood_are_warned_of_with_their_numbers() {
+    let clean = clean();
+    let none = Doubts { misfit: None, widened: None, constant: None };
+    assert!(of_likelihood(&clean, &none).is_empty());
+    let doubts = Doubts { misfit: None, widened: Some(1.7), constant: Some((9.0, 0.4)) };
+    let expected = [Warning::Profile { times: 1.7 }, Warning::ConstantTorque { gain: 9.0, turn: 0.4 }];
+    assert_eq!(of_likelihood(&clean, &doubts), expected);
+    let mut e = clean.clone();
+    e.momentum_trend = Some(InvariantTrend { rate: 0.06, sigma: 0.01 });
+    assert_eq!(
+        of_likelihood(&e, &none),
+        [Warning::MomentumTrend(InvariantTrend { rate: 0.06, sigma: 0.01 })]
+    );
+    // with a torque in the fit its trend is no contradiction
+    e.torque.model = TorqueModel::Drag;
+    assert!(of_likelihood(&e, &none).is_empty());
+    e.torque.gain = Some(12.0);
+    assert_eq!(of_likelihood(&e, &none), [Warning::Torque(e.torque.clone())]);
+    e.whiteness = Whiteness { correlation: 0.3, sigma: 0.01 };
+    assert!(of_likelihood(&e, &none).contains(&Warning::Correlated(e.whiteness)));
+    assert!(of_smoothed(&clean, None, 0.0).is_empty());
+    let density = Warning::TorqueNoise { density: 2e-4, unexplained: clean.unexplained };
+    assert_eq!(of_smoothed(&clean, None, 2e-4), [density]);
+    // of attitudes what was left out, and their noise without what the motion leaves beside it
+    let mut e = clean;
+    let attitudes = AttitudeFit {
+        noise_sigma: 0.03,
+        noise_is_given: false,
+        residual: 0.03,
+        local_noise: Some(0.01),
+        is_inverse: false,
+        direction_gain: None,
+        largest_turn: DOUBTFUL * 0.99,
+        left_out: 0,
+        repeated: 0,
+        alignment: None,
+    };
+    e.attitudes = Some(attitudes.clone());
+    assert!(of_likelihood(&e, &none).is_empty());
+    let turn = DOUBTFUL * 1.01;
+    e.attitudes = Some(AttitudeFit { largest_turn: turn, left_out: 3, repeated: 2, ..attitudes });
+    let expected = [
+        Warning::RepeatedAttitudes { samples: 2 },
+        Warning::Outliers { samples: 3 },
+        Warning::CoarseAttitudes { turn },
+        Warning::AttitudeResiduals { times: 3.0, noise: 0.01 },
+    ];
+    assert_eq!(of_likelihood(&e, &Doubts { misfit: Some(9.0), ..none }), expected);
+}
+
+fn open(singular: [f64; 5], scatter: Matrix3<f64>) -> Identifiability {
+    Identifiability::new(&(singular.into(), Form::identity()), &scatter, &tensor(&coordinates(&body())))
+}
+
+/// What the information leaves open is named by the tensors that it says nothing of.
+#[test]
+fn combinations_that_are_open_are_named() {
+    let scatter = Matrix3::from_diagonal(&Vector3::new(1.0, 0.8, 0.6));
+    let all = open([1e4, 1e3, 1e3, 1e3, 1e2], scatter);
+    assert!(all.complete() && all.rank == 5 && all.null_directions.is_empty() && all.null_tensors.is_empty());
+    assert_eq!(all.deviations, [1e-4, 1e-3, 1e-3, 1e-3, 1e-2]);
+    // the last of the basis is the product yz: the moments along the lines between these axes
+    let product = open([1e4, 1e4, 1e4, 1e4, 0.0], scatter);
+    assert_eq!((product.rank, product.known.len()), (4, 3));
+    assert_eq!(product.null_directions, [Undetermined::Ratio { low: 1, high: 3 }]);
+    let between = Vector3::new(0.0, 1.0, 1.0).normalize();
+    assert!(product.known.iter().any(|known| known.axis.dot(&between).abs() > 1.0 - 1e-9));
+    assert!(product.deviations[4].is_infinite() && !product.complete());
+    let nothing = open([0.0; 5], scatter);
+    assert_eq!(nothing.null_directions, [Undetermined::Everything]);
+    let spin = Matrix3::from_diagonal(&Vector3::new(1e-8, 1.0, 1e-8));
+    let pure = open([1e4, 1e4, 0.0, 0.0, 0.0], spin);
+    let three = [Undetermined::TransverseRatio, Undetermined::SpinRatio, Undetermined::TransverseAxes];
+    assert_eq!(pure.null_directions, three);
+    assert!(pure.known.len() == 1 && pure.known[0].axis.y.abs() > 0.999 && pure.known[0].number.is_none());
+}

@@ -1,0 +1,156 @@
+//! Refusals and warnings say their numbers.
+
+use crate::error::{Clash, FitError, ToldComponent};
+use crate::models::reading_error::ReadingError;
+use crate::physical::constraint::Constraint;
+use crate::physical::coordinates::{Coordinates, Form};
+use crate::report::identifiability::{Identifiability, PrincipalAxis};
+use crate::report::next_step::{Contradiction, NextStep};
+use crate::report::parts::{Halves, Scatter};
+use crate::report::torque_free::{InvariantTrend, Memory};
+use crate::report::warning::Warning;
+use crate::units::product::UnitProduct;
+use nalgebra::{Matrix3, Vector3};
+use polhode::units::RateUnit;
+
+fn says(text: impl ToString, parts: &[&str]) {
+    let text = text.to_string();
+    assert!(parts.iter().all(|part| text.contains(part)), "{text}: {parts:?}");
+}
+
+#[test]
+fn refusals_say_their_numbers() {
+    says(
+        FitError::NoFlight { share: 0.75, torque: Some(0.031), most: 0.02 },
+        &["75 per cent", "0.031 tr(J)", "most 0.02"],
+    );
+    for torque in [None, Some(0.01)] {
+        says(
+            FitError::NoFlight { share: 0.75, torque, most: 0.02 },
+            &["no stretch of free rotation is long enough"],
+        );
+    }
+    let told = |axis, factor, sigma| ToldComponent { axis, factor, sigma };
+    says(
+        FitError::Told(vec![told(1, 1.0345, 0.002), told(2, 0.5, 0.1)]),
+        &["hy is 1.0345 +- 0.0020", ", or hz is 0.50 +- 0.10"],
+    );
+    says(FitError::Exchanged { order: [1, 0, 2], signs: [-1.0, 1.0, -1.0] }, &["(-hy, hx, -hz)"]);
+    // noise of a quarter of the mean square: three components of 1/3 of it each
+    says(FitError::NoRotation { rms: 1.0, noise: 0.5 }, &["1.000e0 rad/s", "at 1.5e0 rad/s or faster"]);
+    let driven = |unexplained, growth, pull| FitError::Driven { unexplained, growth, pull };
+    says(
+        driven(Some(0.37), 0.012, 8.25),
+        &["leaves 37 %", "grows by 1.20 per cent", "8.2 standard deviations"],
+    );
+    let quiet = driven(Some(0.009), -0.1, 0.9).to_string();
+    assert!(!quiet.contains("leaves") && !quiet.contains("grows") && !quiet.contains("moves"), "{quiet}");
+    let unsettled = |fall, factor| FitError::Unsettled {
+        rounds: 12,
+        noise: 0.01,
+        factor,
+        axes: Vec::new(),
+        fall,
+        mirror: Some(Box::new([0.1, 0.4, 0.5])),
+    };
+    says(
+        unsettled(Some(0.03), Some(1.5)),
+        &["12 rounds", "fall by 3.00 per cent", "time 1.5000 times", "0.1000 : 0.4000 : 0.5000"],
+    );
+    says(FitError::Undersampled { turn: 6.0, step: 0.1 }, &["6.000e0 rad", "more than 1.910e1 samples"]);
+    let clash = Clash { first: Constraint::Triangle, second: Constraint::Drag { name: "drag" }, gap: 0.2 };
+    says(FitError::Contradiction(Box::new(clash)), &["half the trace", "drag >= 0", "2.000e-1 of the trace"]);
+    says(
+        FitError::Untold { names: vec!["drag_xx", "drag_zz"], rank: 3 },
+        &["drag_xx, drag_zz", "3 of 5 numbers"],
+    );
+    assert!(!FitError::Untold { names: vec!["drag"], rank: 5 }.to_string().contains("of 5"));
+}
+
+/// What a record leaves open is said with the axes that it tells, and which record would tell more.
+#[test]
+fn what_is_open_is_said_in_words() {
+    let spin = Matrix3::from_diagonal(&Vector3::new(1e-8, 1.0, 1e-8));
+    let (singular, body) = (Coordinates::new(1e4, 1e4, 0.0, 0.0, 0.0), Matrix3::identity() / 3.0);
+    let open = Identifiability::new(&(singular, Form::identity()), &spin, &body);
+    let text = FitError::Unidentifiable(Box::new(open)).to_string();
+    says(&text, &["2 of 5 numbers", "(0.0000, 1.0000, 0.0000), y of the sensor, about which the body spins"]);
+    says(text, &[". Record a throw that wobbles", "as from CAD"]);
+    let axis = PrincipalAxis { axis: Vector3::new(0.0, -0.6, -0.8), number: Some(2) };
+    assert_eq!(axis.to_string(), "(0.0000, 0.6000, 0.8000) is a principal axis, numbered 2 here");
+}
+
+#[test]
+fn warnings_say_their_numbers() {
+    says(Warning::Residuals { times: 9_999.0, noise: 1e-3 }, &["are 9999.0 times"]);
+    says(Warning::Residuals { times: 12_345.0, noise: 1e-3 }, &["are 1.2e4 times"]);
+    says(Warning::Merged { samples: 1 }, &["1 sample was merged"]);
+    says(Warning::Outliers { samples: 2 }, &["2 samples were left out"]);
+    says(Warning::Saturated { samples: 1 }, &["1 sample at", "was left out"]);
+    says(Warning::Bursts { samples: 9, bursts: 1, line: 4 }, &["9 samples", "in 1 burst:", "line 4"]);
+    says(Warning::NoScale { size: -6.0 }, &["negative size, by 6 of its deviations"]);
+    says(Warning::NoScale { size: -1.0 }, &["do not stand out of the noise"]);
+    let as_well = |gain| Warning::AsWell { error: ReadingError::Delays, size: 2.5e-3, gain };
+    says(as_well(-1.5), &["up to 2.5 ms", "lower by 1.5"]);
+    says(as_well(1.5), &["higher by 1.5"]);
+    says(Warning::CoarseAttitudes { turn: 2.0 }, &["2.00 rad", "4.28 rad"]);
+    let halves = Halves { share: 0.25, first: [0.1, 0.4, 0.5], second: [0.2, 0.3, 0.5], chi2: 44.0 };
+    says(Warning::Halves(halves), &["first 25 %", "0.1000 : 0.4000", "rest 0.2000", "44 of 5"]);
+    let scatter = Scatter { parts: 8, chi2: 140.0, dof: 35 };
+    says(Warning::Scatter(scatter), &["8 parts", "140 of 35", "enlarged by 2.0"]);
+    says(
+        Warning::Differing { unknowns: vec![("drag", 2.0), ("scale", 3.5)] },
+        &["in drag (", "by 2.0), scale (", "3.5)"],
+    );
+    says(
+        Warning::NoisySegment { segment: 2, start: 7.5, times: 3.0 },
+        &["segment 3 (from 7.5 s)", "3.0 times"],
+    );
+    says(Warning::Memory(Memory { chi2: 99.0, dof: 27 }), &["99 of 27"]);
+    says(Warning::MomentumTrend(InvariantTrend { rate: -0.01, sigma: 0.001 }), &["-1.00 +- 0.10 per cent"]);
+    says(Warning::Uncertain { deviation: 0.0123 }, &["1.2 per cent"]);
+    says(ReadingError::Misalignment.of_size(0.01), &["0.57 deg"]);
+    says(ReadingError::AxisScales.of_size(0.0234), &["2.3 %"]);
+    says(ReadingError::Offsets.of_size(0.01), &["0.57 deg/s"]);
+}
+
+#[test]
+fn next_steps_say_their_numbers() {
+    let sensor = NextStep::Sensor { name: "offset_x", size: 0.01, unit: "rad/s", times: 4.0 };
+    says(sensor, &["offset_x of 0.01 rad/s", "4.0 times", "one of 0.0025 rad/s"]);
+    says(NextStep::MoreOften { turn: 1.5 }, &["up to 1.50 rad"]);
+    let other = |turn, gain| NextStep::OtherStart { times: 30.0, turn, number: 2, gain };
+    says(other(true, Some(5.0)), &["across axis 2", "30 times less well", "tell it 5 times better"]);
+    says(other(false, None), &["about another axis: I2"]);
+    let left_out =
+        |is_of_sensor| NextStep::FindCause(Contradiction::LeftOut { what: "a magnet", is_of_sensor });
+    says(left_out(true), &["calibrate the sensor", "shows a magnet"]);
+    says(left_out(false), &["find out whether there is a magnet"]);
+}
+
+/// Products of common units are told by the fewest mistakes, and none that is near 1 is one.
+#[test]
+fn units_are_told_by_their_product() {
+    let radians = UnitProduct::common(RateUnit::RadiansPerSecond);
+    let of =
+        |text: &str| radians.iter().find(|product| product.to_string() == text).map(|product| product.factor);
+    let degree = core::f64::consts::PI / 180.0;
+    let near = |found: Option<f64>, expected: f64| found.is_some_and(|f| (f / expected - 1.0).abs() < 1e-12);
+    assert!(near(of("rates in deg/s read as rad/s"), degree) && near(of("times in ms read as s"), 1e-3));
+    assert!(
+        near(of("rates in rad/s read as deg/s"), 1.0 / degree)
+            && near(of("rates in rpm read as rad/s"), 6.0 * degree)
+    );
+    assert!(near(of("rates in deg/s read as rad/s, and times in s read as ms"), degree * 1e3));
+    assert!(radians.iter().all(|product| !(0.5..2.0).contains(&product.factor)));
+    for (k, product) in radians.iter().enumerate() {
+        let again = radians[..k].iter().any(|other| (other.factor / product.factor - 1.0).abs() < 1e-3);
+        assert!(!again, "{product}");
+    }
+    // of a unit that the record names, only that one may be a mistake
+    let degrees = UnitProduct::common(RateUnit::DegreesPerSecond);
+    assert!(degrees.iter().all(|product| product.rates[1] == "deg/s"));
+    assert!(degrees.iter().any(|product| near(Some(product.factor), 1.0 / degree)));
+    let turns = UnitProduct::common(RateUnit::RevolutionsPerMinute);
+    assert!(turns.iter().all(|product| product.rates[1] == "rpm"));
+}
