@@ -91,8 +91,26 @@ fn bits(states: &[Vec<State>]) -> Vec<u64> {
 }
 
 /// Methods that move bodies under forces in lanes.
-const UNDER_FORCES: [&str; 6] =
-    ["rk4", "rk4-normalized", "two-turn", "two-turn:31@suzuki-4", "lie-poisson", "lie-poisson@suzuki-4"];
+const UNDER_FORCES: [&str; 18] = [
+    "rk4",
+    "rk4-normalized",
+    "two-turn",
+    "two-turn:31@suzuki-4",
+    "lie-poisson",
+    "lie-poisson@suzuki-4",
+    "kick-drift",
+    "kick-drift@suzuki-4",
+    "kick-drift@srkn-6b",
+    "kick-drift@srkn-11b",
+    "kick-drift@srkn-14a",
+    "kick-drift@chin-4a",
+    "kick-drift@processed-6-4",
+    "rattle",
+    "rattle@suzuki-4",
+    "dmv:4",
+    "dmv:10",
+    "dmv:12@srkn-11b",
+];
 
 const SETS: [Instructions; 3] = [Instructions::Widest, Instructions::Avx2, Instructions::Baseline];
 
@@ -173,13 +191,18 @@ fn acted_on(forces: &[Force], number: usize, framed: bool) -> (Ensemble, Vec<Ine
 #[test]
 fn a_member_under_forces_has_the_bits_of_its_own_run() {
     const COUNT: usize = 66;
-    let (clock, steps) = (Clock { start: 5.0, step: 0.005 }, [0, 7, 8, 100]);
+    let steps = [0, 7, 8, 100];
     for name in UNDER_FORCES {
+        // steps of many turns have no solution where there is an equation
+        let solves = name.starts_with("rattle") || name.starts_with("dmv");
+        let clock = Clock { start: 5.0, step: if solves { 0.001 } else { 0.005 } };
         for (what, forces) in forces() {
             let body =
                 |inertia: &Inertia| forces.iter().cloned().fold(Body::free(inertia.clone()), Body::with);
             if method(name).unwrap().prepare_f64(clock, &body(&inertia(0))).is_err() {
-                assert!(what.contains("drag") || what == "all", "{name}, {what}");
+                // gradients of squared torques are those of gravity
+                let refused = what.contains("drag") || what == "all" || name.ends_with("chin-4a");
+                assert!(refused, "{name}, {what}");
                 continue;
             }
             let (ensemble, inertias) = acted_on(&forces, COUNT, true);
@@ -201,6 +224,38 @@ fn a_member_under_forces_has_the_bits_of_its_own_run() {
                 }
             }
         }
+    }
+}
+
+/// Of steps of up to seven radians some have no solution.
+#[test]
+fn a_member_whose_step_has_no_solution_fails_as_alone() {
+    const COUNT: usize = 40;
+    let (clock, steps) = (Clock::new(0.03), [1, 60, 100]);
+    let forces = [Force::gravity(Vector3::new(0.3, -0.2, 2.0)).unwrap()];
+    for name in ["rattle", "dmv:4"] {
+        let (ensemble, inertias) = acted_on(&forces, COUNT, true);
+        let mut found = Vec::new();
+        let done = ensemble.advance(&method(name).unwrap(), clock, &steps, |rows| {
+            found.extend(rows.failures().map(|(member, time, error)| (member, time, error.to_string())));
+            Ok::<(), EnsembleError>(())
+        });
+        done.unwrap();
+        let mut alone = Vec::new();
+        for (k, inertia) in inertias.iter().enumerate() {
+            let body = forces.iter().cloned().fold(Body::free(inertia.clone()), Body::with);
+            let start = body.enter_omega(attitude(k).into(), omega(k).into()).unwrap();
+            let run = Run::from_point(&method(name).unwrap(), &body, start.to_f64(), clock).unwrap();
+            let mut run = run.watching(Watch::Never);
+            let mut outcomes = steps.iter().map(|&steps| run.advance_to(steps));
+            if let Some((time, Err(error))) =
+                outcomes.by_ref().enumerate().find(|(_, outcome)| outcome.is_err())
+            {
+                alone.push((k, time, error.to_string()));
+            }
+        }
+        assert!(!alone.is_empty() && alone.len() < COUNT, "{name}: {}", alone.len());
+        assert_eq!(found, alone, "{name}");
     }
 }
 

@@ -96,31 +96,42 @@ impl<S: Real> Gyroscopic<S> {
     }
 
     /// With `scale` times the factor.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn scaled(&self, scale: S) -> Self {
         Gyroscopic(self.0 * scale)
     }
 
+    /// With the factors D.
+    #[inline(always)]
+    pub(crate) fn of_factors(factors: Vec3<S>) -> Self {
+        Gyroscopic(factors)
+    }
+
+    /// D.
+    pub(crate) fn factors(&self) -> Vec3<S> {
+        self.0
+    }
+
     /// The term at `u`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn at(&self, u: Vec3<S>) -> Vec3<S> {
         self.of(u, u)
     }
 
     /// `D_i u_j v_k`; with `D_i v_j u_k` added it is `factor (u × I⁻¹v + v × I⁻¹u)`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn of(&self, u: Vec3<S>, v: Vec3<S>) -> Vec3<S> {
         Vec3([self.component(0, u[1], v[2]), self.component(1, u[2], v[0]), self.component(2, u[0], v[1])])
     }
 
     /// The same of the three products `u_j v_k`, or of sums of such.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn times(&self, products: Vec3<S>) -> Vec3<S> {
         self.0.times(products)
     }
 
     /// Its component i, of u_j and u_k.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn component(&self, i: usize, u_j: S, u_k: S) -> S {
         self.0[i] * u_j * u_k
     }

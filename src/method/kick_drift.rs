@@ -2,9 +2,10 @@
 
 use super::exact_step::{ExactStep, ExactStepMap};
 use super::schemes::Scheme;
-use super::{Cost, Energy, FreePart, Kicks, Map, Method, Splitting, Symmetric};
-use crate::body::{Field, Free, Point, Rotor, Time};
+use super::{Cost, Energy, FreePart, Kicks, Map, Method, SideBySide, Splitting, Symmetric};
+use crate::body::{Field, Free, Point, RENORMALIZE_EVERY, Rotor, Time};
 use crate::flow::{Flow, FreeFlow};
+use crate::method::contract::lanes::LaneFlow;
 use crate::num::{Dd, Precise, Real};
 
 /// The exact free flow with [kicks](Kicks) around it. The name is the field's: *drift* is the free motion between two kicks,
@@ -91,6 +92,12 @@ impl<S: Precise> Map<S> for ExactFlowMap<S> {
             }
             Kind::OneOrbit(steps) => steps.apply(at, x),
         }
+    }
+
+    fn part_side_by_side(&self) -> Option<SideBySide<S>> {
+        let Kind::AnyOrbit { flow, h } = &self.0 else { return None };
+        let renormalize = [(LaneFlow::Renormalize(RENORMALIZE_EVERY), S::of(0.0))];
+        flow.goes_side_by_side().then(|| SideBySide::free(*flow, *h, renormalize))
     }
 
     fn open(&mut self, at: Time, x: &mut Point<S>) {

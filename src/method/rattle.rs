@@ -6,8 +6,9 @@
 //! | c | Cayley vector of the step, `tan(θ/2)` times its axis |
 //! | u | (2/h) I c, a momentum |
 
-use super::{Cost, Energy, FreePart, Kicks, Map, Method, Splitting, Symmetric};
-use crate::body::{Field, Gyroscopic, Point, Rotor, Time};
+use super::{Cost, Energy, FreePart, Kicks, Map, Method, SideBySide, Splitting, Symmetric};
+use crate::body::{Field, Gyroscopic, Point, RENORMALIZE_EVERY, Rotor, Time};
+use crate::method::contract::lanes::LaneFlow;
 use crate::method::solve::cayley::cayley_turn;
 use crate::method::solve::quadratic::Quadratic;
 use crate::num::{Dd, Real};
@@ -85,7 +86,28 @@ pub struct DmvMap<S> {
     worst_residual: f64,
 }
 
+/// Numbers that a map is made of.
+pub(in crate::method) const DMV_CONSTANTS: usize = 6;
+
 impl<S: Real> DmvMap<S> {
+    /// Half a step over each moment, and the factors of u × c.
+    pub(in crate::method) fn constants(&self) -> [S; DMV_CONSTANTS] {
+        let (Vec3([a, b, c]), Vec3([d, e, f])) = (self.half, self.gyroscopic.factors());
+        [a, b, c, d, e, f]
+    }
+
+    #[inline(always)]
+    pub(in crate::method) fn of([a, b, c, d, e, f]: [S; DMV_CONSTANTS]) -> Self {
+        let gyroscopic = Gyroscopic::of_factors(Vec3([d, e, f]));
+        DmvMap { half: Vec3([a, b, c]), gyroscopic, worst_residual: 0.0 }
+    }
+
+    /// The solution of the equation for the momentum `m`, and whether it is one to rounding.
+    #[inline(always)]
+    pub(in crate::method) fn near(&self, m: Vec3<S>) -> (Vec3<S>, bool) {
+        self.equation(m).near()
+    }
+
     /// The map for the reciprocal moments `s/I + d`, `half` being h/2.
     pub(in crate::method) fn set(&mut self, rotor: &Rotor, half: Dd, s: Dd, d: Dd) {
         let inverse = rotor.inverse_moments::<Dd>();
@@ -100,7 +122,7 @@ impl<S: Real> DmvMap<S> {
 
     /// The step with the solution u.
     #[inline(always)]
-    fn step(&self, x: &mut Point<S>, u: Vec3<S>) {
+    pub(in crate::method) fn step(&self, x: &mut Point<S>, u: Vec3<S>) {
         let c = u.times(self.half);
         let alpha = S::of(1.0) + c.norm_squared();
         x.add_momentum(self.gyroscopic.at(u) * (S::of(2.0) / alpha));
@@ -110,7 +132,7 @@ impl<S: Real> DmvMap<S> {
     /// The step from a guess that is not good enough, number by number: they stay in registers.
     #[cold]
     #[inline(never)]
-    fn step_from(&mut self, x: &mut Point<S>, a: S, b: S, c: S) {
+    pub(in crate::method) fn step_from(&mut self, x: &mut Point<S>, a: S, b: S, c: S) {
         let (u, residual) = self.equation(x.momentum_body).iterated(Vec3([a, b, c]));
         self.worst_residual = self.worst_residual.max(residual);
         self.step(x, u);
@@ -127,12 +149,17 @@ impl<S: Real> DmvMap<S> {
 impl<S: Real> Map<S> for DmvMap<S> {
     #[inline]
     fn apply(&mut self, _: Time, x: &mut Point<S>) {
-        let (u, settled) = self.equation(x.momentum_body).near();
+        let (u, settled) = self.near(x.momentum_body);
         if !settled {
             let Vec3([a, b, c]) = u;
             return self.step_from(x, a, b, c);
         }
         self.step(x, u);
+    }
+
+    fn part_side_by_side(&self) -> Option<SideBySide<S>> {
+        let flows = vec![LaneFlow::Dmv(0), LaneFlow::Renormalize(RENORMALIZE_EVERY)];
+        Some(SideBySide::reading(flows, self.constants().into_iter().chain([S::of(0.0)]).collect()))
     }
 
     fn worst_residual(&self) -> f64 {

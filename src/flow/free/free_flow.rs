@@ -50,6 +50,19 @@ impl<S: Precise> FreeFlow<S> {
             },
         })
     }
+
+    /// The series over short times; of a symmetric top there is none.
+    pub(super) fn short(&self) -> Option<&ShortFlow<S>> {
+        match &self.0 {
+            Kind::Symmetric(_) => None,
+            Kind::Asymmetric { short, .. } => Some(short),
+        }
+    }
+
+    /// Whether many bodies can be moved side by side.
+    pub(crate) fn goes_side_by_side(&self) -> bool {
+        self.short().is_some()
+    }
 }
 
 impl<S: Precise> Flow<S> for FreeFlow<S> {

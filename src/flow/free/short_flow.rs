@@ -3,17 +3,17 @@
 use core::array::from_fn;
 
 use crate::body::{Gyroscopic, Point, Rotor};
-use crate::num::{Dd, Precise};
+use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
 
 /// Terms before the series is given up.
-const TERMS: usize = 20;
+pub(super) const TERMS: usize = 20;
 
 /// Terms that suffice for `f64` over the short steps of most runs: a loop of a length that is known is three times as quick.
 const FEW: usize = 12;
 
 /// The largest angle of a turn, rad, that is worth a try.
-const SHORT: f64 = 0.125;
+pub(super) const SHORT: f64 = 0.125;
 
 /// The largest for which few terms are.
 const VERY_SHORT: f64 = 0.03125;
@@ -21,7 +21,7 @@ const VERY_SHORT: f64 = 0.03125;
 /// Where the momentum moves by less than this many roundings of it, the attitude takes a turn in place of the series. The series multiplies
 /// it by the angular velocity itself: where that is a power of two less its last digit, products round to one side at every step, and L
 /// turns by 1e-18 each time.
-const STEADY: f64 = 1.0 / 128.0;
+pub(super) const STEADY: f64 = 1.0 / 128.0;
 
 /// The exact flow of the free body as increments of m and q, so that what rounding takes can be carried.
 ///
@@ -38,7 +38,20 @@ pub(super) struct ShortFlow<S> {
     reciprocals: [S; TERMS],
 }
 
+/// What the series is made from.
+pub(super) struct Constants<S> {
+    pub(super) inverse_moments: Vec3<S>,
+    pub(super) gyroscopic: Vec3<S>,
+    pub(super) reciprocals: [S; TERMS],
+}
+
 impl<S: Precise> ShortFlow<S> {
+    /// For a series of many bodies side by side.
+    pub(super) fn constants(&self) -> Constants<S> {
+        let ShortFlow { inverse_moments, gyroscopic, reciprocals } = *self;
+        Constants { inverse_moments, gyroscopic: gyroscopic.factors(), reciprocals }
+    }
+
     pub(super) fn new(rotor: &Rotor) -> Self {
         ShortFlow {
             inverse_moments: rotor.inverse_moments(),
@@ -73,12 +86,8 @@ impl<S: Precise> ShortFlow<S> {
             for k in 0..=n {
                 let (u, v) = (&m[k], &m[n - k]);
                 products = from_fn(|i| products[i] + u[i + 1] * v[i + 2]);
-                let ([w, x, y, z], [a, b, c]) = (q[k], turn[n - k]);
-                // ½ q ∘ (0, ω), term by term
-                let first = [-z * c, w * a, w * b, w * c];
-                let second = [-x * a, y * c, z * a, x * b];
-                let third = [-y * b, -z * b, -x * c, -y * a];
-                attitude = from_fn(|i| attitude[i] + (first[i] + (second[i] + third[i])));
+                let half = half_turn(q[k], turn[n - k]);
+                attitude = from_fn(|i| attitude[i] + half[i]);
             }
             let factor = t * self.reciprocals[n + 1];
             last = n + 1;
@@ -112,6 +121,20 @@ impl<S: Precise> ShortFlow<S> {
         x.add_attitude(attitude);
         true
     }
+}
+
+/// q ∘ (0, ½ ω) of q and ½ ω, term by term.
+#[inline(always)]
+pub(super) fn half_turn<S: Real>([w, x, y, z]: [S; 4], [a, b, c]: [S; 3]) -> [S; 4] {
+    let first = [-z * c, w * a, w * b, w * c];
+    let second = [-x * a, y * c, z * a, x * b];
+    let third = [-y * b, -z * b, -x * c, -y * a];
+    [
+        first[0] + (second[0] + third[0]),
+        first[1] + (second[1] + third[1]),
+        first[2] + (second[2] + third[2]),
+        first[3] + (second[3] + third[3]),
+    ]
 }
 
 /// What the turn by the vector `2 u` adds to the attitude.

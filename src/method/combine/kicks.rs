@@ -45,7 +45,13 @@ impl<S: Real, F: Field<S>> KickMap<S, F> {
 
 impl<S: Real, F: Field<S>> Map<S> for KickMap<S, F> {
     fn part_side_by_side(&self) -> Option<SideBySide<S>> {
-        self.gradient.is_none().then(|| SideBySide::flows([(LaneFlow::Kick(Dd::ZERO), self.h)]))
+        let kick = LaneFlow::Kick(Dd::ZERO);
+        let Some((gradient, linear)) = self.gradient.zip(self.kick.field().linear_part()) else {
+            return Some(SideBySide::flows([(kick, self.h)]));
+        };
+        let constants =
+            [self.h, gradient.share].into_iter().chain(gradient.inverse_moments.0).chain(linear.moment.0);
+        Some(SideBySide::reading(vec![kick, LaneFlow::Gradient], constants.collect()))
     }
 
     #[inline]

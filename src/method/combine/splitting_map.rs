@@ -123,13 +123,19 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
     fn side_by_side(&self) -> Option<SideBySide<S>> {
         match (&self.ends, &self.pairs[..]) {
             (Ends::OfA, [(a, _)]) if self.processor.is_empty() => a.map.side_by_side(),
-            (Ends::OfA | Ends::A { .. }, _) => None,
+            (Ends::OfA, _) => None,
+            (Ends::A { merged, .. }, [(_, first), pairs @ ..]) => {
+                let pairs = pairs.iter().flat_map(|(a, b)| [a.part_side_by_side(), b.part_side_by_side()]);
+                let first = [first.part_side_by_side()].into_iter();
+                let parts = first.chain(pairs).chain([merged.part_side_by_side()]);
+                SideBySide::chained(parts.collect::<Option<Vec<_>>>()?)
+            }
             (Ends::B { merged, .. }, [pairs @ .., (last, _)]) => {
                 let pairs = pairs.iter().flat_map(|(a, b)| [a.part_side_by_side(), b.part_side_by_side()]);
                 let parts = pairs.chain([last.part_side_by_side(), merged.part_side_by_side()]);
                 SideBySide::chained(parts.collect::<Option<Vec<_>>>()?)
             }
-            (Ends::B { .. } | Ends::Apart, pairs) => {
+            (Ends::A { .. } | Ends::B { .. } | Ends::Apart, pairs) => {
                 let pairs = pairs.iter().flat_map(|(a, b)| [a.part_side_by_side(), b.part_side_by_side()]);
                 let opening = self.opening.iter().map(Timed::part_side_by_side);
                 let parts = opening.chain(pairs).chain(self.closing.iter().map(Timed::part_side_by_side));

@@ -8,8 +8,9 @@ use thiserror::Error;
 
 use self::series::{LARGEST_ORDER, RoundedSeries, Series};
 use super::rattle::DmvMap;
-use super::{Cost, Dmv, Energy, FreePart, Map, Method, Symmetric};
-use crate::body::{Field, Point, Rotor, Time};
+use super::{Cost, Dmv, Energy, FreePart, Map, Method, SideBySide, Symmetric};
+use crate::body::{Field, Point, RENORMALIZE_EVERY, Rotor, Time};
+use crate::method::contract::lanes::LaneFlow;
 use crate::num::{Dd, Precise};
 
 /// The discrete Moser–Veselov map of an even order from 4 to 20.
@@ -144,6 +145,13 @@ impl<S: Precise> Map<S> for PreprocessedDmvMap<S> {
     #[inline]
     fn advance(&mut self, at: Time, x: &mut Point<S>) {
         if self.fixed { self.modified.apply(at, x) } else { self.apply(at, x) }
+    }
+
+    fn part_side_by_side(&self) -> Option<SideBySide<S>> {
+        let flows = vec![LaneFlow::Dmv(self.rounded.degree()), LaneFlow::Renormalize(RENORMALIZE_EVERY)];
+        let polynomials = self.rounded.constants(S::from_dd(self.h * 0.5));
+        let constants = self.plain.constants().into_iter().chain(polynomials).chain([S::of(0.0)]);
+        Some(SideBySide::reading(flows, constants.collect()))
     }
 
     fn worst_residual(&self) -> f64 {

@@ -164,6 +164,18 @@ pub(in crate::method) struct RoundedSeries<S> {
 }
 
 impl<S: Real> RoundedSeries<S> {
+    /// What [`values`](Self::values) reads, h/2 put in: what makes X and A, and the coefficients from the last on.
+    pub(in crate::method) fn constants(&self, half: S) -> impl Iterator<Item = S> {
+        let Vec3([a, b, c]) = self.weights;
+        let coefficients = self.terms.iter().rev().flat_map(|row| row.iter().rev().flatten().copied());
+        [self.half_square, a, b, c, half].into_iter().chain(coefficients)
+    }
+
+    /// The largest power of X.
+    pub(in crate::method) fn degree(&self) -> usize {
+        self.terms.len()
+    }
+
     /// s and d for the momentum `m`.
     #[inline]
     pub(in crate::method) fn values(&self, m: Vec3<S>) -> [S; 2] {

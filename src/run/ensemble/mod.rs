@@ -240,7 +240,8 @@ impl Ensemble {
     /// `each` is given the members part by part, in their order. Rows have the bits of a [`Run`](super::Run) of the member
     /// alone. The splittings by turns about axes, such as `two-turn` and `lie-poisson`, and `rk4` move bodies side by side: free
     /// ones, and those on which uniform gravity, a gravity gradient and drag act, or some of these (drag with `rk4` alone, as
-    /// splittings do not take it). Members on one orbit share it. Every other method, and bodies with other forces, with forces that
+    /// splittings do not take it). Under these forces so do `kick-drift`, `rattle` and `dmv`, in every scheme: `kick-drift` while a free flow
+    /// turns by less than an eighth of a radian and no two moments are equal. Members on one orbit share it. Every other method, and bodies with other forces, with forces that
     /// are switched or with wheels, go member by member.
     ///
     /// # Errors

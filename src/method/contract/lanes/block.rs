@@ -4,6 +4,7 @@ use super::SideBySide;
 use super::acting::Acting;
 use super::kernel::{self, Kernel};
 use crate::body::{Clock, Point};
+use crate::flow::FreeLanes;
 use crate::num::{Instructions, LANES, Lane};
 
 /// Numbers of a point: attitude, momentum, and what rounding carries of each.
@@ -17,17 +18,19 @@ pub(crate) struct Block {
     pub(super) clock: Clock,
     pub(super) points: [Lane; PARTS],
     pub(super) constants: Vec<Lane>,
+    /// Where flows of the kernel are free.
+    pub(super) free: Option<Box<FreeLanes>>,
     steps: u64,
 }
 
 impl Block {
     /// Of at most [`LANES`] points, each with the constants of its steps; lanes that are left repeat the first.
     pub(crate) fn new(clock: Clock, members: &[(Point<f64>, &SideBySide<f64>)]) -> Option<Self> {
-        let (first, SideBySide { kernel, acting, constants }) = members.first()?;
+        let (first, SideBySide { kernel, acting, constants, .. }) = members.first()?;
         let count = constants.len();
         let (mut points, mut constants) = ([Lane::ZERO; PARTS], vec![Lane::ZERO; count]);
-        let filled = members.iter().chain(members.first().into_iter().cycle()).take(LANES);
-        for (n, (point, steps)) in filled.enumerate() {
+        let filled = || members.iter().chain(members.first().into_iter().cycle()).take(LANES);
+        for (n, (point, steps)) in filled().enumerate() {
             for (lane, part) in points.iter_mut().zip(point.parts()) {
                 lane[n] = part;
             }
@@ -35,8 +38,10 @@ impl Block {
                 lane[n] = *constant;
             }
         }
+        let free = filled().filter_map(|(_, steps)| steps.free.as_deref());
+        let free = kernel.takes_free_flows().then(|| FreeLanes::new(free).map(Box::new)).flatten();
         let (kernel, acting, steps) = (kernel.clone(), acting.clone(), first.steps());
-        Some(Block { kernel, acting, clock, points, constants, steps })
+        Some(Block { kernel, acting, clock, points, constants, free, steps })
     }
 
     /// Steps that each body has taken.

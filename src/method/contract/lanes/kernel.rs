@@ -9,17 +9,24 @@ use core::ops::Range;
 
 use multiversion::multiversion;
 
-use super::acting::{Acting, FORCES, Torques, vector};
+use super::acting::{Acting, FORCES, Torques, quaternion, vector};
 use super::block::{Block, PARTS};
+use super::dmv::{self, Solves};
 use super::stages::Stages;
-use crate::body::{Place, Point};
-use crate::flow::{quarter_squared, quarters, turn_by};
+use crate::body::{LinearPotential, Place, Point, Time};
+use crate::flow::{Flow as _, FreeLanes, quarter_squared, quarters, turn_by};
+use crate::method::Map as _;
+use crate::method::contract::map::SOLVED;
+use crate::method::rattle::DMV_CONSTANTS;
 use crate::method::rk4::{RK4_CONSTANTS, Rk4Step};
 use crate::num::trig::{
     SMALL, sin_cos_moderate, sin_versine, sin_versine_moderate, sin_versine_small, sinc_cos_small,
 };
 use crate::num::{Dd, LANES, Lane, Real as _};
 use crate::rotation::Vec3;
+
+/// Numbers of each body that [`LaneFlow::Gradient`] reads.
+const GRADIENT_CONSTANTS: usize = 7;
 
 /// Does `$step` with the point of every lane in turn.
 macro_rules! each {
@@ -43,7 +50,7 @@ macro_rules! each {
 /// What steps are made of.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Kernel {
-    /// Flows, one after another, with a constant each.
+    /// Flows, one after another, with as many constants each as they [take](LaneFlow::constants).
     Flows(Vec<LaneFlow>),
     /// The classical Runge–Kutta method without forces, normalised or not; the constants are those of [`Rk4Step`].
     FreeRk4(bool),
@@ -58,8 +65,15 @@ pub(crate) enum LaneFlow {
     Turn(usize, Width),
     /// A turn about the momentum; the constant is a quarter of its angle over |m|.
     Ball,
+    /// The free flow; the constant is its length, s.
+    Free,
     /// A kick, so many seconds after the beginning of the step; the constant is its length, s.
     Kick(Dd),
+    /// The gradient of a squared torque; the constants are its share, the reciprocal moments and the moment of gravity.
+    Gradient,
+    /// The discrete Moser–Veselov map; the constants are those of [`DmvMap`], and above degree 0 those of the polynomials of this
+    /// degree that modify it.
+    Dmv(usize),
     /// Brings |q| back to 1 in the last of so many steps; the constant is of no use.
     Renormalize(u64),
 }
@@ -76,6 +90,15 @@ pub(crate) enum Width {
 }
 
 impl LaneFlow {
+    /// How many numbers of each body it reads.
+    pub(super) fn constants(self) -> usize {
+        match self {
+            LaneFlow::Gradient => GRADIENT_CONSTANTS,
+            LaneFlow::Dmv(degree) => DMV_CONSTANTS + dmv::constants(degree),
+            _ => 1,
+        }
+    }
+
     /// The same so many seconds later.
     pub(super) fn later(self, duration: Dd) -> Self {
         match self {
@@ -86,6 +109,11 @@ impl LaneFlow {
 }
 
 impl Kernel {
+    /// Whether it takes free flows of bodies.
+    pub(super) fn takes_free_flows(&self) -> bool {
+        matches!(self, Kernel::Flows(flows) if flows.contains(&LaneFlow::Free))
+    }
+
     /// Whether the numbers of forces stand before its constants.
     pub(super) fn takes_forces(&self) -> bool {
         match self {
@@ -117,20 +145,41 @@ pub(super) fn baseline(block: &mut Block, range: Range<u64>) {
 #[inline(always)]
 fn steps(block: &mut Block, range: Range<u64>) {
     let takes_forces = block.kernel.takes_forces();
-    let Block { kernel, acting, clock, points, constants, .. } = block;
+    let Block { kernel, acting, clock, points, constants, free, .. } = block;
     let (numbers, constants) = constants.split_at(if takes_forces { FORCES } else { 0 });
     match kernel {
         Kernel::Flows(flows) => {
             let (mut angles, mut torques) = ([Lane::ZERO; 2], Torques::ZERO);
+            let mut solves = Solves::ZERO;
             for step in range {
-                for (flow, constants) in flows.iter().zip(constants) {
+                let mut left = constants;
+                for flow in flows.iter() {
+                    let Some((all, others)) = left.split_at_checked(flow.constants()) else { return };
+                    let [constants, ..] = all else { return };
+                    left = others;
                     match flow {
                         LaneFlow::Turn(axis, width) => turn(*axis, *width, points, constants, &mut angles),
                         LaneFlow::Ball => ball(points, constants, &mut angles),
+                        LaneFlow::Free => {
+                            let Some(free) = free.as_deref_mut() else { return };
+                            flow_free(free, clock.at(step), points, constants);
+                        }
                         LaneFlow::Kick(begun) => {
                             let Some(numbers) = numbers.first_chunk() else { return };
                             let place = acting.place(clock.at(step).later(*begun));
                             kick((acting, numbers), place.as_ref(), points, constants, &mut torques);
+                        }
+                        LaneFlow::Gradient => {
+                            if let Some(constants) = all.first_chunk() {
+                                gradient(points, constants);
+                            }
+                        }
+                        LaneFlow::Dmv(degree) => {
+                            if let Some((plain, polynomials)) = all.split_first_chunk() {
+                                solves.set(*degree, plain, polynomials, points);
+                                let settled = solves.solve(points);
+                                step_dmv(&solves, settled, points);
+                            }
                         }
                         LaneFlow::Renormalize(every) if step % every == every - 1 => {
                             each!(points, |n, x| x.renormalize());
@@ -245,6 +294,29 @@ fn ball(points: &mut [Lane; PARTS], rates: &Lane, angles: &mut [Lane; 2]) {
     });
 }
 
+/// Free flows of the times `t`; of series that have no sum the bodies go alone.
+#[inline(always)]
+fn flow_free(free: &mut FreeLanes, at: Time, points: &mut [Lane; PARTS], t: &Lane) {
+    let (Some(attitude), Some(momentum)) = (points.first_chunk(), points[4..].first_chunk()) else { return };
+    let settled = free.sum(t, attitude, momentum);
+    let (momentum, attitude) = (&free.momentum, &free.attitude);
+    if settled == LANES {
+        each!(points, |n, x| {
+            x.add_momentum(vector(momentum, n));
+            x.add_attitude(quaternion(attitude, n));
+        });
+        return;
+    }
+    each!(points, |n, x| {
+        if free.is_settled(n) {
+            x.add_momentum(vector(momentum, n));
+            x.add_attitude(quaternion(attitude, n));
+        } else if let Some(flow) = free.alone(n) {
+            flow.flow(at, t[n], x);
+        }
+    });
+}
+
 /// A kick at `place`.
 #[inline(always)]
 fn kick(
@@ -257,6 +329,40 @@ fn kick(
     let Some(attitude) = points.first_chunk() else { return };
     acting.torques(numbers, place, attitude, &[Lane::ZERO; 3], torques);
     each!(points, |n, x| x.add_momentum(vector(&torques.torque, n) * lengths[n]));
+}
+
+/// What a kick with a gradient adds.
+#[inline(always)]
+fn gradient(points: &mut [Lane; PARTS], constants: &[Lane; GRADIENT_CONSTANTS]) {
+    let [share, a, b, c, x, y, z] = constants;
+    each!(points, |n, point| {
+        let linear = LinearPotential { moment: Vec3([x[n], y[n], z[n]]) };
+        let inverse_moments = Vec3([a[n], b[n], c[n]]);
+        let change = linear.gradient_of_squared_torque(inverse_moments, point.attitude) * share[n];
+        point.add_momentum(change);
+    });
+}
+
+/// Steps of the discrete Moser–Veselov map, of which so many are `settled`. A body whose step has no solution gets no momentum: alone it
+/// runs into the same and says why.
+#[inline(always)]
+fn step_dmv(solves: &Solves, settled: usize, points: &mut [Lane; PARTS]) {
+    if settled == LANES {
+        each!(points, |n, x| solves.map(n).step(x, vector(&solves.solution, n)));
+        return;
+    }
+    each!(points, |n, x| {
+        let mut map = solves.map(n);
+        if solves.is_settled(n) {
+            map.step(x, vector(&solves.solution, n));
+        } else {
+            let Vec3([a, b, c]) = vector(&solves.solution, n);
+            map.step_from(x, a, b, c);
+            if map.worst_residual() > SOLVED {
+                x.momentum_body = Vec3([f64::NAN; 3]);
+            }
+        }
+    });
 }
 
 #[inline(always)]
