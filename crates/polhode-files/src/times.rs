@@ -338,7 +338,8 @@ fn unit_of(name: &Name) -> Option<TimeUnit> {
     TimeUnit::named(&name.letters).filter(|_| name.unit.is_none())
 }
 
-/// The first unit of time but seconds that a comment names in full, other than behind a number, as in 'a record of 24 hours'.
+/// The first unit of time but seconds that a comment names in full, other than behind a number, as in 'a record of 24 hours', or in
+/// short, as in 't in min', 'unit: h' and 't/d'.
 fn unit_in(comment: &str) -> Option<String> {
     const UNITS: [&str; 6] = ["minute", "hour", "day", "millisecond", "microsecond", "nanosecond"];
     let words: Vec<&str> =
@@ -347,8 +348,16 @@ fn unit_in(comment: &str) -> Option<String> {
         let word = word.to_lowercase();
         UNITS.contains(&word.strip_suffix('s').unwrap_or(&word))
     };
+    const SHORT: [&str; 9] = ["min", "mins", "h", "hr", "hrs", "d", "ms", "us", "ns"];
+    let is_said = |before: &str| ["in", "unit", "units"].contains(&before.to_lowercase().as_str());
+    let quotient = comment.split_whitespace().filter_map(|word| word.split_once('/'));
+    let mut quotients = quotient.filter(|(of, by)| ["t", "time"].contains(of) && SHORT.contains(by));
+    if let Some((_, unit)) = quotients.next() {
+        return Some(unit.into());
+    }
+    let is_short = |k: usize| k > 0 && SHORT.contains(&words[k]) && is_said(words[k - 1]);
     let behind_number = |k: usize| k > 0 && words[k - 1].ends_with(|c: char| c.is_ascii_digit());
-    (0..words.len()).find(|&k| is_unit(words[k]) && !behind_number(k)).map(|k| words[k].into())
+    (0..words.len()).find(|&k| is_unit(words[k]) && !behind_number(k) || is_short(k)).map(|k| words[k].into())
 }
 
 /// The cells of a line; between blanks a unit in brackets is that of the name before it.
@@ -399,11 +408,19 @@ mod tests {
         assert_eq!(read("t (min) flux\n1 7\n2 7\n", None, None), Ok(vec![60.0, 120.0]));
         assert_eq!(read("# flux t (h)\n7 1\n", Some("2"), None), Ok(vec![3600.0]));
         assert_eq!(read("# of 2024\n1\n", None, None), Ok(vec![1.0]));
-        for comment in ["# time in minutes", "# Hours since launch\n# of a pass"] {
+        for comment in [
+            "# time in minutes",
+            "# Hours since launch\n# of a pass",
+            "# t in min",
+            "# unit: h",
+            "# t/d",
+            "# time/h",
+        ] {
             assert_eq!(read(&format!("{comment}\nt (s)\n1\n"), None, None), Ok(vec![1.0]), "{comment}");
             assert_eq!(read(&format!("{comment}\n1min\n"), None, None), Ok(vec![60.0]), "{comment}");
             assert!(read(&format!("{comment}\n1\n"), None, None).is_err(), "{comment}");
         }
+        assert_eq!(read("# time/ms\n1\n", None, None), Ok(vec![1e-3]));
         assert_eq!(read("# a pass of 24 hours, or 1440 minutes\n1\n", None, None), Ok(vec![1.0]));
         assert_eq!(read("1\n# minutes from here on are no header\n2\n", None, None), Ok(vec![1.0, 2.0]));
     }

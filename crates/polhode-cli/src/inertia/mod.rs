@@ -36,7 +36,8 @@ const EXAMPLES: &str = "Examples:
 ///   box LX,LY,LZ    ellipsoid A,B,C (semi-axes)    sphere R    shell R
 ///   cylinder R,H    tube R1,R2,H    cone R,H    torus R,r    rod L
 ///   disk R    plate LX,LY    hoop R    capsule R,H (H without the caps)
-///   mesh FILE (.stl, .obj or .ply; what parts of it overlap counts twice: told)
+///   mesh FILE (.stl, .obj or .ply; where parts overlap, it counts twice: a
+///     warning says how much, but may miss overlaps below 1/128 of the size)
 ///   tensor Ixx,Iyy,Izz,Ixy,Ixz,Iyz (or all nine entries, by rows)
 ///   parts FILE.toml    json FILE
 ///   urdf FILE...    mjcf FILE...    sdf FILE...
