@@ -43,7 +43,7 @@ const DIGITS: f64 = 16.0;
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let turned = context.scale.pick(300.0, 1e4, 1e5);
-    let starts = context.scale.pick(1, 5, 10);
+    let starts = context.scale.pick(1, 5, 6);
     let fields = BODIES.iter().map(|name| field(name, turned, starts)).collect::<Result<Vec<_>, _>>()?;
     let mut names: Vec<String> = without_projections().iter().map(|method| method.name()).collect();
     names.extend(SCHEMES.into_iter().chain(TAKEN_BACK).map(String::from));

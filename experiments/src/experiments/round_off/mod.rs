@@ -65,7 +65,7 @@ const QUANTITIES: [(&str, &str, f64); 3] = [
 ];
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
-    let count = context.scale.pick(8, 64, 64);
+    let count = context.scale.pick(8, 32, 32);
     let longest = context.scale.pick(10_000, 100_000, 10_000_000);
     let longest_dd = context.scale.pick(1_000, 3_000, 100_000);
     let looks = looks(longest);
