@@ -108,13 +108,10 @@ pub use simulate::{
 pub use units::product::UnitProduct;
 pub use wheel::{WheelCalibration, calibrate_wheel};
 
-/// Chapters for those who measure.
+/// What the fit decides by, and where that is measured.
 pub mod guide {
     #[doc = include_str!("../thresholds.md")]
     pub mod thresholds {}
-
-    #[doc = include_str!("../records.md")]
-    pub mod records {}
 }
 
 #[cfg(doctest)]
