@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)] // what clippy.toml allows inside #[test], for the helpers too
 
+mod answers;
 mod carrier;
 mod causes;
 mod failures;
