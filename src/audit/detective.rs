@@ -283,6 +283,7 @@ impl Case<'_> {
             + holds(claims.omega_frame.is_some() && claims.omega_frame == reading.omega_frame)
             + holds(claims.rate_unit.is_some() && claims.rate_unit == reading.rate_unit)
             + holds(claims.momentum_frame.is_some() && claims.momentum_frame == reading.momentum_frame)
+            + holds(claims.angle_axes.is_some() && claims.angle_axes == reading.angle_axes())
             + holds(claims.moments == Some(reading.moments));
         let usual = holds(reading.attitude == Some(Direction::BodyToSpace))
             + holds(reading.omega_frame == Some(Frame::Body))
@@ -340,6 +341,7 @@ fn distance(defects: &Defects, best: &Defects) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::{AngleUnit, Angles};
     use super::*;
 
     #[test]
@@ -391,6 +393,11 @@ mod tests {
             omega_frame: Some(Frame::Space),
             rate_unit: Some(RateUnit::DegreesPerSecond),
             momentum_frame: Some(Frame::Body),
+            angles: Some(Angles {
+                sequence: "zyx".parse().unwrap(),
+                turns: Turns::Extrinsic,
+                unit: AngleUnit::Radians,
+            }),
             ..Reading::default()
         };
         let holding = |claims: &dyn Fn(&mut Convention)| {
@@ -398,16 +405,17 @@ mod tests {
             claims(&mut claimed);
             with_case(claimed, |case| case.preference(&reading)[0])
         };
-        let single: [&dyn Fn(&mut Convention); 5] = [
+        let single: [&dyn Fn(&mut Convention); 6] = [
             &|claims| claims.attitude = reading.attitude,
             &|claims| claims.omega_frame = reading.omega_frame,
             &|claims| claims.rate_unit = reading.rate_unit,
             &|claims| claims.momentum_frame = reading.momentum_frame,
+            &|claims| claims.angle_axes = Some([2, 1, 0]),
             &|claims| claims.moments = Some(reading.moments),
         ];
-        assert_eq!(single.map(holding), [1; 5]);
+        assert_eq!(single.map(holding), [1; 6]);
         assert_eq!(holding(&|_| ()), 0);
-        assert_eq!(holding(&|claims| single.iter().for_each(|claim| claim(claims))), 5);
+        assert_eq!(holding(&|claims| single.iter().for_each(|claim| claim(claims))), 6);
         assert_eq!(holding(&|claims| claims.omega_frame = Some(Frame::Body)), 0);
     }
 }

@@ -302,8 +302,9 @@ fn momentum_frame(record: &Trajectory, reading: &Reading, body: &Body) -> Option
 /// The claim of the question that the reading contradicts.
 fn broken_claim(reading: &Reading, finding: &Finding, question: &Question) -> Option<Suspect> {
     let claims = &question.claims;
-    let moments_hold =
-        |claimed| finding.right[..finding.tied].iter().any(|found| found.reading.moments == claimed);
+    let tied = &finding.right[..finding.tied];
+    let moments_hold = |claimed| tied.iter().any(|found| found.reading.moments == claimed);
+    let axes_hold = |claimed| tied.iter().any(|found| found.reading.angle_axes() == Some(claimed));
     let differs = |claimed: bool, same: bool| claimed && !same;
     if differs(claims.attitude.is_some(), claims.attitude == reading.attitude) && reading.attitude.is_some() {
         return Some(Suspect::Transposed);
@@ -314,6 +315,9 @@ fn broken_claim(reading: &Reading, finding: &Finding, question: &Question) -> Op
     }
     if claims.rate_unit.is_some() && reading.rate_unit.is_some() && claims.rate_unit != reading.rate_unit {
         return Some(Suspect::Degrees);
+    }
+    if reading.angles.is_some() && claims.angle_axes.is_some_and(|claimed| !axes_hold(claimed)) {
+        return Some(Suspect::AnglesOrder);
     }
     if question.body.is_some() && claims.moments.is_some_and(|claimed| !moments_hold(claimed)) {
         return Some(Suspect::MomentsOrder);

@@ -44,8 +44,8 @@ pub struct Noise {
 
 /// What is claimed of the convention of a record; `None` is to be told from the record.
 ///
-/// The place of the scalar, the Euler sequence and the unit of angles are taken as given. A direction, a frame, a unit of rates
-/// or an order of moments that the record contradicts makes it wrong, with the claim as the suspect.
+/// The place of the scalar, the Euler sequence and the unit of angles are taken as given. A direction, a frame, a unit of rates,
+/// axes of angles or an order of moments that the record contradicts makes it wrong, with the claim as the suspect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Convention {
@@ -57,6 +57,8 @@ pub struct Convention {
     pub angles: Option<Angles>,
     /// Unit of Euler angles, where the rest is to be told.
     pub angle_unit: Option<AngleUnit>,
+    /// What the Euler angles turn about by the names of their columns: of roll, pitch and yaw x, y and z, `[0, 1, 2]`.
+    pub angle_axes: Option<[usize; 3]>,
     /// Axes of the angular velocity.
     pub omega_frame: Option<Frame>,
     /// Unit of the angular velocity.
@@ -75,6 +77,7 @@ impl Default for Convention {
             attitude: None,
             angles: None,
             angle_unit: None,
+            angle_axes: None,
             omega_frame: None,
             rate_unit: None,
             momentum_frame: None,

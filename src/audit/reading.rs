@@ -120,6 +120,12 @@ impl Reading {
         }
     }
 
+    /// The axes, from 0, that the Euler angles turn about, in the order of their columns.
+    #[must_use]
+    pub fn angle_axes(&self) -> Option<[usize; 3]> {
+        self.angles.map(|angles| angles.sequence.axes())
+    }
+
     /// Whether the moments are in the order in which they were given.
     #[must_use]
     pub fn moments_as_given(&self) -> bool {

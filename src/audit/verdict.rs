@@ -45,6 +45,8 @@ pub enum Suspect {
     MomentsOrder,
     /// A unit of angular velocity is taken for another, such as degrees for radians.
     Degrees,
+    /// Euler angles turn about other axes than the names of their columns say.
+    AnglesOrder,
     /// Euler's equations without ω × Iω.
     GyroscopicTermMissing,
     /// A term of ω × Iω with the wrong sign.
@@ -280,8 +282,8 @@ impl fmt::Display for Judgement {
 }
 
 impl fmt::Display for Suspect {
-    /// `none`, `kinematics-sign`, `omega-frame`, `transposed`, `moments-order`, `degrees`, `gyroscopic-term-missing`,
-    /// `gyroscopic-sign`, `integrator:NAME`, `discontinuity`, `other-body`, `other-torque` or `other-wheel`.
+    /// `none`, `kinematics-sign`, `omega-frame`, `transposed`, `moments-order`, `degrees`, `angles-order`,
+    /// `gyroscopic-term-missing`, `gyroscopic-sign`, `integrator:NAME`, `discontinuity`, `other-body`, `other-torque` or `other-wheel`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Suspect::None => "none",
@@ -290,6 +292,7 @@ impl fmt::Display for Suspect {
             Suspect::Transposed => "transposed",
             Suspect::MomentsOrder => "moments-order",
             Suspect::Degrees => "degrees",
+            Suspect::AnglesOrder => "angles-order",
             Suspect::GyroscopicTermMissing => "gyroscopic-term-missing",
             Suspect::GyroscopicSign => "gyroscopic-sign",
             Suspect::Integrator(name) => return write!(f, "integrator:{name}"),

@@ -15,12 +15,10 @@ use crate::text::visible;
 #[derive(Debug)]
 #[non_exhaustive]
 pub struct FoundTrajectory {
-    /// Trajectories with the name of their body, where there are several.
+    /// Trajectories with the name of their body, where a column or the names of columns tell it.
     pub bodies: Vec<(Option<String>, Trajectory)>,
     /// What names and layout claim of the convention.
     pub claims: Convention,
-    /// Whether the columns of the Euler angles say by their names what they turn about: roll about x, pitch about y, yaw about z, in this order.
-    pub angles_are_named: bool,
     /// Whether the times are counts of steps, of a length that the file does not tell.
     pub counts_steps: bool,
     /// Lines before the header that begin with #, without that.
@@ -115,13 +113,10 @@ fn found(mut table: Table) -> Result<FoundTrajectory, TableError> {
     }
     let times = rows.bodies.first().map_or(&[][..], |body| &body.times);
     let read_as = table.read_as(times.windows(2).map(|pair| pair[1] - pair[0]).collect());
-    let several = rows.bodies.len() > 1;
-    let bodies =
-        rows.bodies.into_iter().map(|body| (body.name.clone().filter(|_| several), body.trajectory()));
+    let bodies = rows.bodies.into_iter().map(|body| (body.name.clone(), body.trajectory()));
     Ok(FoundTrajectory {
         bodies: bodies.collect(),
         claims,
-        angles_are_named: angles_are_named(&table),
         counts_steps: table.counts_steps(),
         unread: table.header.unread().map(|name| visible(name).into_owned()).collect(),
         second_attitude: table
@@ -144,6 +139,7 @@ fn claims(table: &Table) -> Result<Convention, TableError> {
             Quantity::Quaternion => claims.quaternion = Some(QuaternionOrder::ScalarFirst),
             Quantity::Rodrigues => claims.attitude = Some(Direction::BodyToSpace),
             Quantity::Angles => {
+                claims.angle_axes = attitude.angle_axes;
                 if let Some(text) = &attitude.units[0] {
                     claims.angle_unit = AngleUnit::named(text);
                     if claims.angle_unit.is_none() {
@@ -166,15 +162,6 @@ fn claims(table: &Table) -> Result<Convention, TableError> {
         claims.attitude = Some(Direction::BodyToSpace);
     }
     Ok(claims)
-}
-
-/// Whether the columns of the Euler angles are roll, pitch and yaw.
-fn angles_are_named(table: &Table) -> bool {
-    let attitude = table.header.bodies.first().and_then(|body| body.attitude.as_ref());
-    attitude.filter(|group| group.quantity == Quantity::Angles).is_some_and(|group| {
-        let mut names = group.places.iter().map(|place| &table.header.names[*place].letters);
-        ["roll", "pitch", "yaw"].iter().all(|about| names.next().is_some_and(|name| name.starts_with(about)))
-    })
 }
 
 /// The rows of one body so far.

@@ -47,10 +47,11 @@ const EXAMPLES: &str = "Examples:
 ///
 /// right: every row and every column is within --tolerance of a motion of the body, within what its own digits tell, or within
 /// the noise that --noise declares. A record that agrees within a noise that nobody declares is undecided. If the rows contradict
-/// a direction, a frame, a unit or the order of the moments that a name or an option states, the record is wrong.
+/// a direction, a frame, a unit, the axes of roll, pitch and yaw, or the order of the moments that a name or an option states, the
+/// record is wrong.
 ///
-/// suspect: kinematics-sign, omega-frame, transposed, moments-order, degrees, gyroscopic-term-missing, gyroscopic-sign,
-/// integrator:NAME, discontinuity, other-body, other-torque, other-wheel or none. If the integrator is to blame, a method and a
+/// suspect: kinematics-sign, omega-frame, transposed, moments-order, degrees, angles-order, gyroscopic-term-missing,
+/// gyroscopic-sign, integrator:NAME, discontinuity, other-body, other-torque, other-wheel or none. If the integrator is to blame, a method and a
 /// step that would do are named, if they are found within two seconds.
 ///
 /// Exit code 0: right; 1: wrong or undecided.
@@ -82,7 +83,7 @@ pub(crate) struct Audit {
     #[arg(long, value_name = "GOLDEN.csv", conflicts_with_all = ["BodyArguments", "weight_moment"], help_heading = "Verdict")]
     against: Option<PathBuf>,
     /// Write golden trajectories and programs that check against them into this folder
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["record", "against", "BodyArguments"], help_heading = "Output")]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["record", "against", "BodyArguments", "id", "tolerance", "noise", "figure", "report", "format", "out"], help_heading = "Output")]
     golden: Option<PathBuf>,
     /// Draw the errors of energy, |m|, direction of L and attitude against time to this file
     #[arg(long, value_name = "FILE.svg", help_heading = "Output")]
@@ -189,7 +190,11 @@ impl Audit {
         let mut remark = found.remark();
         let claims = self.reading.claims(found.claims);
         let bodies: Vec<(Option<String>, Trajectory)> = match &self.id {
-            None => found.bodies,
+            None => {
+                // a body that is alone needs no name
+                let several = found.bodies.len() > 1;
+                found.bodies.into_iter().map(|(id, rows)| (id.filter(|_| several), rows)).collect()
+            }
             Some(wanted) => {
                 let known: Vec<String> = found.bodies.iter().filter_map(|(id, _)| id.clone()).collect();
                 let chosen: Vec<_> =

@@ -62,7 +62,7 @@ fn sequence(text: &str) -> Result<(EulerSequence, Turns), String> {
 impl AttitudeArguments {
     /// Angles in columns of the names roll, pitch and yaw, in the order of the sequence that is stated.
     pub(crate) fn order(&self, found: &mut FoundTrajectory) -> Result<(), Error> {
-        let (true, Some((sequence, _))) = (found.angles_are_named, self.euler) else { return Ok(()) };
+        let (Some(_), Some((sequence, _))) = (found.claims.angle_axes, self.euler) else { return Ok(()) };
         let axes = sequence.axes();
         if axes[0] == axes[2] {
             let rule = "turns about one axis twice, and roll, pitch and yaw are angles about x, y and z";
@@ -78,6 +78,7 @@ impl AttitudeArguments {
                 angles.iter_mut().for_each(|row| *row = axes.map(|axis| row[axis]));
             }
         }
+        found.claims.angle_axes = Some(axes);
         Ok(())
     }
 

@@ -170,6 +170,12 @@ fn bodies_of_one_file_are_told_apart_by_their_id() {
     assert_eq!((&found[1]["id"], &found[1]["verdict"]), (&"bad".into(), &"wrong".into()), "{found:#}");
     assert_eq!(run(&format!("audit {file} {BODY} --id good --format json")).code, 0);
     refused(&format!("audit {file} {BODY} --id godo"), &["--id: 'godo': no such body", "known: good, bad"]);
+    let text = fs::read_to_string(&file).unwrap();
+    let alone =
+        text.lines().filter(|line| !line.contains("bad")).fold(String::new(), |all, line| all + line + "\n");
+    let alone = scratch.file("alone.csv", alone);
+    assert_eq!(run(&format!("audit {alone} {BODY} --id good --format json")).code, 0);
+    assert!(!run(&format!("audit {alone} {BODY} --format table")).out.contains("body good"));
 }
 
 #[test]
@@ -302,6 +308,45 @@ fn what_cannot_be_audited_is_refused_with_file_line_and_column() {
         &["--golden", "README.md of another kind", "empty folder"],
     );
     assert_eq!(fs::read_to_string(own).unwrap(), "# Mine\n");
+    for flags in ["--report r.html", "--figure f.svg", "--out o.json", "--tolerance 1e-3", "--id 3"] {
+        let line = format!("audit --golden {} {flags}", scratch.0.join("new").display());
+        refused(&line, &["--golden", "cannot be used with"]);
+    }
+}
+
+/// Columns named roll, pitch and yaw turn about x, y and z; a program that exchanges two of them is wrong, not another convention.
+#[test]
+fn angles_under_the_names_of_others_are_wrong() {
+    let scratch = Scratch::new("audit-angles");
+    let line = format!(
+        "propagate {BODY} --omega 0.4,1,-0.3 --attitude 0.8,0.3,-0.4,0.2 --until 6 --every 0.3 --euler zyx --fields t,euler,omega"
+    );
+    let text = output(&format!("{line} --format csv"));
+    let (_, rows) = text.split_once('\n').unwrap();
+    let rates = "omega_body_x,omega_body_y,omega_body_z";
+    // the columns are turns about z, y and x
+    for (names, expected) in [
+        ("yaw,pitch,roll", ("right", "none")),
+        ("roll,pitch,yaw", ("wrong", "angles-order")),
+        ("phi,theta,psi", ("right", "none")),
+    ] {
+        let file = scratch.file("angles.csv", format!("t,{names},{rates}\n{rows}"));
+        let answer = run(&format!("audit {file} {BODY} --format json"));
+        let found = &verdict(&answer);
+        assert_eq!(
+            (&found["verdict"], &found["suspect"]),
+            (&expected.0.into(), &expected.1.into()),
+            "{found:#}"
+        );
+        let warned = found["warnings"].to_string().contains("stand for turns about x, y and z");
+        assert_eq!(warned, expected.0 == "wrong", "{found:#}");
+        // the names of columns state nothing where flags name them
+        let named: Vec<&str> = names.split(',').collect();
+        let line =
+            format!("audit {file} {BODY} --columns t=t,e1={},e2={},e3={}", named[0], named[1], named[2]);
+        let answer = run(&format!("{line},wx=omega_body_x,wy=omega_body_y,wz=omega_body_z --format json"));
+        assert_eq!(verdict(&answer)["verdict"], "right", "{}", answer.err);
+    }
 }
 
 #[test]

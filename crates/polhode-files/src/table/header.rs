@@ -17,6 +17,8 @@ pub(crate) struct Group {
     pub(crate) units: Vec<Option<String>>,
     /// The axes that the names state.
     pub(crate) frame: Option<Frame>,
+    /// The axes, from 0, that the names of Euler angles say they turn about: of roll, pitch and yaw x, y and z.
+    pub(crate) angle_axes: Option<[usize; 3]>,
     /// The names without the component.
     stem: &'static str,
     yields: bool,
@@ -227,7 +229,7 @@ impl Group {
     /// Of columns whose names state nothing.
     pub(crate) fn of(quantity: Quantity, places: Vec<usize>) -> Self {
         let units = vec![None; places.len()];
-        Group { quantity, places, units, frame: None, stem: "", yields: false }
+        Group { quantity, places, units, frame: None, angle_axes: None, stem: "", yields: false }
     }
 }
 
@@ -302,7 +304,8 @@ fn groups(names: &[Name]) -> Result<Vec<Group>, Rule> {
                     places.iter().zip(&targets).map(|(&k, target)| names[k].unit_behind(target, endings));
                 let (units, frame) = (units.collect(), frame(stem));
                 let (quantity, yields) = (spelling.quantity, spelling.yields);
-                found.push(Group { quantity, places, units, frame, stem, yields });
+                let angle_axes = (targets[0] == "roll").then_some([0, 1, 2]);
+                found.push(Group { quantity, places, units, frame, angle_axes, stem, yields });
                 break;
             }
         }
