@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::UnitQuaternion;
-use polhode::audit::{Direction, QuaternionOrder, Reading, Trajectory};
+use polhode::audit::{Attitudes, Direction, Reading, Trajectory};
 use polhode::strapdown::Estimate;
 use polhode_files::ReadOptions;
 use polhode_files::error::{Error, tell, warn};
@@ -40,8 +40,23 @@ impl Reference {
                 return Err(Error::input("--against", &name, rule, "name a file with t, q_w, q_x, q_y, q_z"));
             }
         };
+        let open = match (&rows.attitude, found.claims.quaternion) {
+            (Some(Attitudes::Quaternions(_)), None) => {
+                Some("its quaternions do not say where the scalar stands")
+            }
+            (Some(Attitudes::Angles(_)), _) => Some("its Euler angles do not say their sequence"),
+            _ => None,
+        };
+        if let Some(rule) = open {
+            return Err(Error::input(
+                "--against",
+                &name,
+                rule,
+                "write its attitudes in columns q_w, q_x, q_y, q_z",
+            ));
+        }
         let mut reading = Reading::default();
-        reading.quaternion = Some(found.claims.quaternion.unwrap_or(QuaternionOrder::ScalarFirst));
+        reading.quaternion = found.claims.quaternion;
         reading.attitude = Some(found.claims.attitude.unwrap_or(Direction::BodyToSpace));
         Ok(Self {
             name,
@@ -98,9 +113,12 @@ impl Reference {
         tell(
             "note",
             &format!(
-                "{}: {} rows compared, largest error {:.1e} rad at t = {} s, {} inside their 95 %",
+                "{}: {} rows compared, read as {}; largest error {:.1e} rad at t = {} s, {} inside their 95 %",
                 self.name,
                 self.compared,
+                self.reading
+                    .attitude
+                    .map_or(String::new(), |direction| direction.to_string().replace('-', " ")),
                 self.largest,
                 rounded(self.at),
                 self.inside

@@ -66,10 +66,11 @@ pub(crate) struct Attitude {
     /// A free body in sensor axes: the attitudes are those of its exact motion that fits all rates best, and a last column integrated has the angle to the attitude by the readings alone, rad
     #[arg(long, value_name = "NAME|FILE[:LINK]", help_heading = "Method")]
     body: Option<String>,
-    /// Compare with the attitudes of this file at the same times: a last column attitude_error, rad
+    /// Compare with the attitudes of this file at the same times, body to space unless its names say otherwise: a last column
+    /// attitude_error, rad
     #[arg(long, value_name = "REFERENCE.csv", help_heading = "Output")]
     against: Option<PathBuf>,
-    /// Also print Euler angles in this sequence, intrinsic, such as zyx: phi, theta, psi, rad
+    /// Also print Euler angles in this sequence, intrinsic, such as zyx: phi, theta, psi, rad, of the attitude body to space
     #[arg(long, value_name = "SEQUENCE", value_parser = sequence, help_heading = "Output")]
     euler: Option<EulerSequence>,
     /// Order of the columns of the quaternion

@@ -75,6 +75,18 @@ impl Compare {
                 }
             }
         }
+        if let (Some(Positives(steps)), true) =
+            (&self.steps, entries.iter().all(|entry| entry.step.is_none()))
+        {
+            let value: Vec<String> = steps.iter().map(|step| short(*step)).collect();
+            let rule = "each of the methods chooses its steps";
+            return Err(Error::input(
+                "--steps",
+                &value.join(","),
+                rule,
+                "leave it out, or add a method that takes steps",
+            ));
+        }
         if let (Some(Positives(tolerances)), true) =
             (&self.tolerances, entries.iter().all(|entry| entry.step.is_some()))
         {

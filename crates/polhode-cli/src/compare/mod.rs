@@ -78,7 +78,7 @@ pub(crate) struct Compare {
     #[command(flatten)]
     table: TableArguments,
     /// State the place of the scalar in the quaternions of trajectories [default: as named, else found from the rows]
-    #[arg(long, value_enum, help_heading = "Reading")]
+    #[arg(long, value_enum, requires = "trajectory", help_heading = "Reading")]
     quaternion: Option<Order>,
     /// Predict the attitude error at the end from a short run, of methods that keep energy and |m| of a free body within bounds,
     /// without forces or under weak ones: how fast it grows as a shift in time along the polhode (s/s) and as a twist about L
@@ -101,6 +101,11 @@ impl Compare {
         let body = self.motion.body(self.start_time)?;
         let start = self.motion.start(&body, self.start_time)?;
         let span = self.span()?;
+        if self.trajectory.is_empty() && !self.table.is_empty() {
+            return Err(Error::Input(
+                "--columns, --time-unit and --sample-rate say how a trajectory is read; give --trajectory, or leave them out".into(),
+            ));
+        }
         let entries = self.entries(span)?;
         let speed = body.omega_of(&start).norm();
         for entry in &entries {

@@ -22,6 +22,11 @@ pub(crate) struct TableArguments {
 }
 
 impl TableArguments {
+    /// Whether no flag is given.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.columns.is_none() && self.time_unit.is_none() && self.sample_rate.is_none()
+    }
+
     /// Whether a flag names columns.
     pub(crate) fn names_columns(&self) -> bool {
         self.columns.is_some()

@@ -20,7 +20,8 @@ pub(super) struct MeshArguments {
     /// How the holes of an open mesh are closed [default: an open mesh is refused]
     #[arg(long, value_enum, conflicts_with = "shell")]
     close: Option<How>,
-    /// Only the surface of a mesh has mass, as walls of this thickness, m [default: the mesh is solid]
+    /// Only the surface of a mesh has mass, as thin walls of this thickness, m, whatever --length-unit is; where the mass is given the
+    /// thickness does not count [default: the mesh is solid]
     #[arg(long, value_name = "THICKNESS", value_parser = positive, allow_hyphen_values = true)]
     shell: Option<f64>,
     /// Only this group of an OBJ file, or solid of an ASCII STL [default: the whole file]

@@ -83,7 +83,8 @@ pub(super) struct GyroscopeArguments {
     /// Scale error of each axis
     #[arg(long, value_name = "ax,ay,az", value_parser = numbers::<3>, allow_hyphen_values = true)]
     axis_scale_errors: Option<[f64; 3]>,
-    /// Angles by which the pairs of axes xy, xz, yz are not orthogonal, half of it on each axis, rad
+    /// How far the axes of the pairs xy, xz and yz lean towards each other, each of the two, rad: the angle between them is off by twice
+    /// that, which is what `fit` estimates
     #[arg(long, value_name = "xy,xz,yz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     misalignment: Option<[f64; 3]>,
     /// Step of the digital output, rad/s

@@ -11,7 +11,8 @@ use polhode::num::Random;
 use polhode_files::error::Error;
 use polhode_files::instant::positive_duration;
 use polhode_files::numbers::{not_negative, number, numbers};
-use polhode_fit::{SimulatedPoses, simulate_poses};
+use polhode_files::text::rounded;
+use polhode_fit::{Gyroscope, SimulatedPoses, simulate_poses};
 use polhode_pages::table::{Cell, Column, Format, RowWriter, Table};
 
 use crate::flags::body::BodyArguments;
@@ -101,6 +102,13 @@ impl Simulate {
             ));
         };
         let gyroscope = self.gyroscope.gyroscope();
+        if !self.gyroscope.has_rates() && gyroscope != Gyroscope::default() {
+            return Err(Error::Input(
+                "--attitude-noise: alone it writes attitudes without rates, which errors of the rate sensor do not change; give --noise \
+                 too, or leave these errors out"
+                    .into(),
+            ));
+        }
         let mut random = Random::new(self.seed);
         let grid: Vec<f64> =
             regular(0.0, self.until, self.every).and_then(Regular::kept).map_err(Error::Input)?;
@@ -112,7 +120,18 @@ impl Simulate {
         let tells_wheels = self.disturbances.has_wheel() || !wheels.is_empty();
         let mut rows =
             RowWriter::new(self.table(tells_wheels), self.format, self.out.as_deref(), tosses * grid.len())?;
+        if tosses == 1 && (self.pause.is_some() || self.scatter > 0.0) {
+            let given = if self.pause.is_some() { "--pause" } else { "--scatter" };
+            return Err(Error::Input(format!(
+                "{given}: there is one toss; ask for more by --tosses, or leave it out"
+            )));
+        }
         let pause = self.pause.unwrap_or(20.0 * self.every);
+        if pause <= self.jitter * self.every {
+            let rule =
+                format!("times scatter over {} s, so that tosses overlap", rounded(self.jitter * self.every));
+            return Err(Error::input("--pause", &rounded(pause), &rule, "give a longer pause"));
+        }
         for toss in 0..tosses {
             let mut scattered = |share: f64, times: &[f64]| -> Vec<f64> {
                 times.iter().map(|t| t + share * self.every * (random.uniform() - 0.5)).collect()

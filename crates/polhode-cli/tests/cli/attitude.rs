@@ -44,7 +44,7 @@ fn columns_are_those_of_the_contract_and_errors_those_of_the_budget() {
     assert!((0.3..3.0).contains(&(last(&truncation) / last(&error))));
     assert!(answer.err.contains("; at t = 20 s: truncation"), "{}", answer.err);
     assert!(answer.err.contains("the trapezoid with coning would be off by"), "{}", answer.err);
-    assert!(answer.err.contains("401 rows compared"), "{}", answer.err);
+    assert!(answer.err.contains("401 rows compared, read as body to space"), "{}", answer.err);
     // the rules that others run, and orders by hand
     let of = |flags: &str| {
         let answer = run(&format!("attitude {record} --kind rate --against {reference} {flags}"));
@@ -183,6 +183,10 @@ fn records_that_tell_no_attitude_are_refused_by_name() {
     refused(&format!("--start 1,0,0,0 --against {other}"), &["--against", "no row at a time"]);
     let later = scratch.file("later.csv", "t,q_w,q_x,q_y,q_z\n1,1,0,0,0\n2,1,0,0,0\n");
     refused(&format!("--against {later}"), &["--against", "no attitude at the first time", "--start"]);
+    let open = scratch.file("open.csv", "t,q0,q1,q2,q3\n0,1,0,0,0\n1,1,0,0,0\n");
+    refused(&format!("--against {open}"), &["--against", "where the scalar stands", "q_w, q_x, q_y, q_z"]);
+    let angles = scratch.file("angles.csv", "t,phi,theta,psi\n0,0,0,0\n1,0,0,1\n");
+    refused(&format!("--against {angles}"), &["--against", "do not say their sequence"]);
 }
 
 #[test]

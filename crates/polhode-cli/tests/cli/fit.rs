@@ -328,6 +328,10 @@ fn unusable_input_is_refused_by_file_line_and_column() {
         ("--tosses 0", ["'--tosses <N>'", "0"]),
         ("--tosses 100000", ["--tosses: '100000'", "51 samples each"]),
         ("--pause 0", ["'--pause <P>'", "not positive"]),
+        ("--pause 1", ["--pause: there is one toss", "--tosses"]),
+        ("--scatter 1", ["--scatter: there is one toss", "--tosses"]),
+        ("--tosses 2 --pause 1us --jitter 0.9", ["--pause: '1e-6'", "tosses overlap"]),
+        ("--attitude-noise 1e-3 --offset 0,0.1,0", ["--attitude-noise: alone", "give --noise too"]),
         ("--torque 1e99,0,1e98", ["the motion cannot be followed beyond", "weaken the torques"]),
         ("--offset 0,x,0", ["'--offset <bx,by,bz>'", "item 2: 'x' is not a number"]),
     ] {

@@ -178,6 +178,18 @@ fn the_keys_of_the_conventions_are_there() {
 }
 
 #[test]
+fn walls_thicker_than_the_body_are_refused() {
+    let scratch = workshop("walls");
+    let answer = scratch.run("mesh cube.obj --length-unit mm --density 3 --shell 1");
+    assert_eq!(answer.code, 2, "{}", answer.err);
+    for part in ["--shell: '1'", "walls of m", "0.001 m long", "0.001 for 1 mm"] {
+        assert!(answer.err.contains(part), "{part}: {}", answer.err);
+    }
+    let thin = scratch.json("mesh cube.obj --length-unit mm --density 3 --shell 1e-5");
+    assert!((numbers(&thin["mass"])[0] / (6e-6 * 3e-5) - 1.0).abs() < 1e-12);
+}
+
+#[test]
 fn meshes_in_any_unit_are_the_solids() {
     let scratch = workshop("meshes");
     let millimetres = OBJ_CUBE.replace(" 1", " 1000").replace("f 1000", "f 1");

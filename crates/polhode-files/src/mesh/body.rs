@@ -87,6 +87,17 @@ impl MeshOptions {
         let refused = |error: MassError| Error::Input(format!("mesh {}: {error}", path.display()));
         let surface = self.surface(path)?;
         if let Some(thickness) = self.shell {
+            let half = 0.5 * surface.extents().into_iter().fold(0.0, f64::max);
+            if thickness > half {
+                let rule =
+                    format!("walls of m, of a body that is {} m long", rounded(three_digits(2.0 * half)));
+                return Err(Error::input(
+                    "--shell",
+                    &rounded(thickness),
+                    &rule,
+                    "give the thickness in m, as 0.001 for 1 mm",
+                ));
+            }
             let amount = match amount {
                 Amount::Density(density) => Amount::Density(density * thickness),
                 mass => mass,

@@ -23,7 +23,7 @@ pub struct Gyroscope {
     pub scale: f64,
     /// Scale error a of each axis.
     pub axis_scales: Vector3<f64>,
-    /// Γ_xy, Γ_xz, Γ_yz, rad: how far each axis leans towards another.
+    /// Γ_xy, Γ_xz, Γ_yz, rad: how far each axis leans towards another. The angle of the pair is off by twice that.
     pub misalignment: Vector3<f64>,
     /// How much later each axis is read than the time says, s.
     pub skew: Vector3<f64>,

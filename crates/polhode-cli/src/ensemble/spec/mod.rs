@@ -15,7 +15,7 @@ use polhode::flow::TumblingPopulation;
 use polhode::inertia::Inertia;
 use polhode::rotation::Vec3;
 use polhode::run::MemberError;
-use polhode_files::error::Error;
+use polhode_files::error::{Error, warn};
 use polhode_files::read;
 use polhode_files::toml_file::{Section, TomlFile};
 use toml::Spanned;
@@ -133,6 +133,12 @@ impl Spec {
                         listed.display()
                     );
                     return Err(run.at("members", &rule));
+                }
+                if let Some(members) = members.filter(|members| *members < count) {
+                    warn(&format!(
+                        "{}: has {count} rows, and [run]: members asks for {members}: the rest is left out",
+                        listed.display()
+                    ));
                 }
                 (Source::Listed(Box::new(candidates)), members.unwrap_or(count))
             }

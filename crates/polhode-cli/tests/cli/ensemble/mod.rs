@@ -286,6 +286,17 @@ fn a_member_that_fails_is_a_row_of_its_own() {
 }
 
 #[test]
+fn rows_of_members_that_are_left_out_are_told() {
+    let scratch = Scratch::new("ensemble-fewer");
+    scratch.file("members.csv", "i1,i2,i3\n1,1.1,0.5\n1,1.2,0.5\n1,1.3,0.5\n");
+    let spec = "[start]\nomega = [0.1, 0.2, 5]\n[spread]\nmembers_file = \"members.csv\"\n[run]\nmembers = 2\ntimes = [2]\n";
+    scratch.file("spec.toml", spec);
+    let answer = polhode(&words("ensemble spec.toml --out out"), &scratch.0);
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    assert!(answer.err.contains("has 3 rows, and [run]: members asks for 2"), "{}", answer.err);
+}
+
+#[test]
 fn forces_act_on_every_member() {
     let scratch = Scratch::new("ensemble-forces");
     let line = |body: &str| {
