@@ -16,6 +16,7 @@ use crate::experiments::Which;
 const COSTED: &str = "work-precision";
 const WHICH: &str = "which";
 const CLAIM: &str = "claim";
+const SPANS: &str = "spans";
 const CURVES: &str = "curves";
 pub(super) const NAMES: &str = "names have small letters, digits and hyphens";
 pub(super) const REMEDY: &str =
@@ -94,6 +95,9 @@ impl Results {
     pub(super) fn table(&self, name: &str) -> Result<Table, Error> {
         if self.origin.experiment == COSTED && name == WHICH {
             return Ok(self.which()?.table());
+        }
+        if self.origin.experiment == COSTED && name == SPANS {
+            return Ok(self.which()?.spans());
         }
         let part = self.origin.views.get(name);
         let whole = part.map_or(name, |part| &part.table);

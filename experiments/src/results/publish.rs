@@ -5,7 +5,7 @@
 //! every `generated/experiment-table` that an article names is made: a LaTeX table, a CSV, or the experiment, commit and
 //! scale as a sentence (`generated/experiment-origin`). `methods` is the catalogue in both, in articles without sources;
 //! `work-precision/which` the quickest methods by kind of problem, `work-precision/claim` whether any is quicker than the
-//! general-purpose ones everywhere, and `generated/work-precision-curves.csv` cost against accuracy. `generated/style` is the
+//! general-purpose ones everywhere, `work-precision/spans` whether that changes as the time grows, and `generated/work-precision-curves.csv` cost against accuracy. `generated/style` is the
 //! style of figures for LaTeX. The page docs/methods.md is the catalogue with what was measured of each method.
 //! Nothing is read or written outside of the root, whatever the results and the markers say.
 

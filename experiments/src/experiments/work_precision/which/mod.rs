@@ -1,6 +1,7 @@
 //! Which method is the quickest, by kind of problem: what `work-precision` measured, over all bodies of a kind.
 
 mod curves;
+mod spans;
 
 use std::collections::BTreeMap;
 
