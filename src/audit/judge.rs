@@ -304,7 +304,14 @@ fn broken_claim(reading: &Reading, finding: &Finding, question: &Question) -> Op
     let claims = &question.claims;
     let tied = &finding.right[..finding.tied];
     let moments_hold = |claimed| tied.iter().any(|found| found.reading.moments == claimed);
-    let axes_hold = |claimed| tied.iter().any(|found| found.reading.angle_axes() == Some(claimed));
+    // the axes and the moments have to be those that are claimed in one and the same reading
+    let moments = claims.moments.filter(|_| question.body.is_some());
+    let axes_hold = |claimed| {
+        let both = |read: &Reading| {
+            read.angle_axes() == Some(claimed) && moments.is_none_or(|moments| moments == read.moments)
+        };
+        tied.iter().any(|found| both(&found.reading))
+    };
     let differs = |claimed: bool, same: bool| claimed && !same;
     if differs(claims.attitude.is_some(), claims.attitude == reading.attitude) && reading.attitude.is_some() {
         return Some(Suspect::Transposed);
@@ -316,11 +323,11 @@ fn broken_claim(reading: &Reading, finding: &Finding, question: &Question) -> Op
     if claims.rate_unit.is_some() && reading.rate_unit.is_some() && claims.rate_unit != reading.rate_unit {
         return Some(Suspect::Degrees);
     }
+    if moments.is_some_and(|claimed| !moments_hold(claimed)) {
+        return Some(Suspect::MomentsOrder);
+    }
     if reading.angles.is_some() && claims.angle_axes.is_some_and(|claimed| !axes_hold(claimed)) {
         return Some(Suspect::AnglesOrder);
-    }
-    if question.body.is_some() && claims.moments.is_some_and(|claimed| !moments_hold(claimed)) {
-        return Some(Suspect::MomentsOrder);
     }
     None
 }

@@ -340,6 +340,15 @@ fn angles_under_the_names_of_others_are_wrong() {
         );
         let warned = found["warnings"].to_string().contains("stand for turns about x, y and z");
         assert_eq!(warned, expected.0 == "wrong", "{found:#}");
+        // without rates the exchange is another convention of a body with its moments in another order: still not this body
+        let angles = rows.lines().map(|row| row.split(',').take(4).collect::<Vec<_>>().join(",") + "\n");
+        let alone = scratch.file("alone.csv", format!("t,{names}\n{}", angles.collect::<String>()));
+        let found = verdict(&run(&format!("audit {alone} {BODY} --format json")));
+        assert_eq!(
+            (&found["verdict"], &found["suspect"]),
+            (&expected.0.into(), &expected.1.into()),
+            "{found:#}"
+        );
         // the names of columns state nothing where flags name them
         let named: Vec<&str> = names.split(',').collect();
         let line =
