@@ -83,7 +83,7 @@ impl Trajectory {
                     "state it by --quaternion wxyz or xyzw",
                 ),
                 _ => refused(
-                    "its rows leave the sequence of the Euler angles open",
+                    "its rows leave the sequence of the Euler angles open, or turn about other axes than roll, pitch and yaw say",
                     "write the attitude as a quaternion",
                 ),
             };
@@ -188,7 +188,7 @@ fn reading(columns: &Columns, claims: Convention, body: &Body) -> Option<(Readin
         (is_quaternion && other.quaternion != best.quaternion)
             || other.angles.map(|angles| angles.sequence) != best.angles.map(|angles| angles.sequence)
     };
-    if is_open && ties.iter().any(differs) {
+    if is_open && (verdict.suspect == Suspect::AnglesOrder || ties.iter().any(differs)) {
         return None;
     }
     if verdict.judgement == Judgement::Right && !ties.contains(&own) {

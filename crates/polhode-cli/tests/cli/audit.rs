@@ -340,6 +340,12 @@ fn angles_under_the_names_of_others_are_wrong() {
         );
         let warned = found["warnings"].to_string().contains("stand for turns about x, y and z");
         assert_eq!(warned, expected.0 == "wrong", "{found:#}");
+        // nor is it beside others a trajectory of another convention
+        let line = format!(
+            "compare {BODY} --omega 0.4,1,-0.3 --attitude 0.8,0.3,-0.4,0.2 --until 6 --methods rk4 --steps 0.1"
+        );
+        let beside = run(&format!("{line} --trajectory {file}"));
+        assert_eq!(beside.code, if expected.0 == "right" { 0 } else { 2 }, "{names}: {}", beside.err);
         // without rates the exchange is another convention of a body with its moments in another order: still not this body
         let angles = rows.lines().map(|row| row.split(',').take(4).collect::<Vec<_>>().join(",") + "\n");
         let alone = scratch.file("alone.csv", format!("t,{names}\n{}", angles.collect::<String>()));
