@@ -35,6 +35,18 @@ impl Interval {
     }
 }
 
+/// The chance that at least `count` of `of` have what each has with the chance `each`. For rare ones: Wilson's interval of a small count
+/// begins too high there.
+pub(crate) fn chance_of(count: u64, of: u64, each: f64) -> f64 {
+    let (none, odds) = (libm::pow(1.0 - each, of as f64), each / (1.0 - each));
+    let fewer = (0..count).scan(none, |term, k| {
+        let now = *term;
+        *term *= (of.saturating_sub(k)) as f64 / (k + 1) as f64 * odds;
+        Some(now)
+    });
+    1.0 - fewer.sum::<f64>()
+}
+
 /// 10 %, median and 90 % of an ensemble.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Quantiles {
@@ -99,6 +111,20 @@ mod tests {
             i.high
         );
         assert!(Interval::new(0, 0).is_none());
+    }
+
+    #[test]
+    fn chances_are_those_of_the_binomial_distribution() {
+        // sums of the terms in exact fractions
+        let known = [
+            (2, 216, 1e-3, 0.020_157_559_191_097_543),
+            (2, 11, 1e-3, 5.467_098_815_430_802e-5),
+            (5, 10, 0.5, 0.623_046_875),
+        ];
+        for (count, of, each, chance) in known {
+            assert!((chance_of(count, of, each) / chance - 1.0).abs() < 1e-9, "{count} of {of}");
+        }
+        assert_eq!((chance_of(0, 5, 0.3), chance_of(0, 0, 0.3)), (1.0, 1.0));
     }
 
     #[test]

@@ -19,7 +19,7 @@ use trial::{Trial, trial};
 const SEED: u64 = 160_160;
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
-    let trials = context.scale.pick(1, 1, 200);
+    let trials = context.scale.pick(1, 1, 150);
     let (seconds, rate) = context.scale.pick((12, 50), (20, 100), (60, 100));
     let noises: &[f64] = context.scale.pick(&[1e-2], &[1e-2], &[1e-3, 1e-2]);
     let times: Vec<f64> = (0..=rate * seconds).map(|i| i as f64 / rate as f64).collect();

@@ -55,7 +55,7 @@ enum Outcome {
 }
 
 pub(super) fn add(context: &Context, report: &mut Report) -> Result<(), Error> {
-    let bodies: u64 = context.scale.pick(64, 64, 10_240);
+    let bodies: u64 = context.scale.pick(64, 64, 5_120);
     let members: Vec<u64> = (0..bodies).collect();
     let found = context.in_parallel(members, |member| examine(member).map(|found| (member, found)));
     let found = found.into_iter().collect::<Result<Vec<_>, Error>>()?;

@@ -21,7 +21,7 @@ const COARSEST: i32 = 5;
 
 /// Beyond the horizon `LONG` a run goes only where it costs at most `AFFORDABLE` evaluations in all and its median error up to there
 /// is at most `WORTH_WHILE` rad.
-const AFFORDABLE: f64 = 2e7;
+const AFFORDABLE: f64 = 1.5e7;
 const WORTH_WHILE: f64 = 1e-3;
 
 /// A method is not run at finer steps once so many of them in a row have brought no smaller error: there it is rounding.
