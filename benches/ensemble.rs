@@ -43,7 +43,7 @@ const ROWS: [(Instructions, &str, f64); 9] = [
 ];
 
 /// The same under forces, against the scalar step of the method under them.
-const UNDER_FORCES: [(Instructions, &str, Forces, f64); 18] = {
+const UNDER_FORCES: [(Instructions, &str, Forces, f64); 33] = {
     use Forces::{Drag, Gradient, Gravity};
     use Instructions::{Avx2, Baseline, Widest};
     [
@@ -53,18 +53,33 @@ const UNDER_FORCES: [(Instructions, &str, Forces, f64); 18] = {
         (Widest, "two-turn:31", Gravity, 9.5),
         (Widest, "two-turn:31", Gradient, 15.0),
         (Widest, "lie-poisson:321", Gradient, 15.0),
+        (Widest, "kick-drift", Gradient, 7.0),
+        (Widest, "kick-drift@srkn-11b", Gradient, 11.0),
+        (Widest, "rattle", Gradient, 7.7),
+        (Widest, "dmv:10", Gradient, 7.7),
+        (Widest, "dmv:12@srkn-11b", Gradient, 9.0),
         (Avx2, "rk4", Gravity, 5.8),
         (Avx2, "rk4", Gradient, 12.0),
         (Avx2, "rk4", Drag, 13.8),
         (Avx2, "two-turn:31", Gravity, 6.5),
         (Avx2, "two-turn:31", Gradient, 12.0),
         (Avx2, "lie-poisson:321", Gradient, 12.0),
+        (Avx2, "kick-drift", Gradient, 4.5),
+        (Avx2, "kick-drift@srkn-11b", Gradient, 6.3),
+        (Avx2, "rattle", Gradient, 7.6),
+        (Avx2, "dmv:10", Gradient, 6.0),
+        (Avx2, "dmv:12@srkn-11b", Gradient, 6.0),
         (Baseline, "rk4", Gravity, 3.1),
         (Baseline, "rk4", Gradient, 7.0),
         (Baseline, "rk4", Drag, 8.1),
         (Baseline, "two-turn:31", Gravity, 3.8),
         (Baseline, "two-turn:31", Gradient, 7.0),
         (Baseline, "lie-poisson:321", Gradient, 7.0),
+        (Baseline, "kick-drift", Gradient, 2.9),
+        (Baseline, "kick-drift@srkn-11b", Gradient, 4.3),
+        (Baseline, "rattle", Gradient, 5.5),
+        (Baseline, "dmv:10", Gradient, 5.2),
+        (Baseline, "dmv:12@srkn-11b", Gradient, 4.9),
     ]
 };
 
@@ -215,14 +230,14 @@ fn main() -> ExitCode {
 
     println!("under forces, and the same step of one body alone:");
     println!(
-        "{:10} {:16} {:10} {:>14} {:>12} {:>14} {:>8}",
+        "{:10} {:20} {:10} {:>14} {:>12} {:>14} {:>8}",
         "", "", "", "ns/body-step", "million/s", "alone, ns", "ratio"
     );
     for (instructions, name, forces, known) in UNDER_FORCES {
         let (set, available) = measured(instructions);
         let what = format!("{forces:?}").to_lowercase();
         if !available {
-            println!("{set:10} {name:16} {what:10} {:>14}", "not measured");
+            println!("{set:10} {name:20} {what:10} {:>14}", "not measured");
             continue;
         }
         let ensemble = members(MEMBERS).by(instructions);
@@ -238,7 +253,7 @@ fn main() -> ExitCode {
         let each = (many - few) / ((MANY - FEW) * MEMBERS) as f64;
         let ratio = reference / each;
         println!(
-            "{set:10} {name:16} {what:10} {:14.2} {:12.0} {:14.1} {ratio:8.1}{}",
+            "{set:10} {name:20} {what:10} {:14.2} {:12.0} {:14.1} {ratio:8.1}{}",
             1e9 * each,
             1e-6 / each,
             1e9 * reference,
