@@ -21,7 +21,7 @@ impl<S: Real> Potential<S> for Spring {
     }
 }
 
-/// Kicks and drifts of Forest and Ruth, Physica D 43 (1990) 105: half of each palindrome, less what closes it.
+/// Kicks and drifts of Forest and Ruth, Physica D 43 (1990) 105: the first half of each palindrome, without the middle, which follows from the sum.
 const B: &[Dd] = &[Dd::sum(0.675_603_595_979_828_8, 4.213_708_877_725_88e-17)];
 const A: &[Dd] = &[Dd::sum(1.351_207_191_959_657_5, 8.427_417_755_451_76e-17)];
 const STAGES: Stages = Stages::Alternating { first: Part::B, a: A, b: B, pairs: Pairs::Any };
