@@ -28,11 +28,11 @@ const ELLIPSOID: f64 = 11.070_497_693_516_35;
 /// Deviation of a number of the tensor, over the trace, from which on a record counts as not determining it.
 const VAGUE: f64 = 0.1;
 
-/// The least that the error over the bound can be. A planar body lies on the wall I₁ + I₂ = I₃ of what bodies can be, of which the bound
+/// The square of the least that the error over the bound can be. A planar body lies on the wall I₁ + I₂ = I₃ of what bodies can be, of which the bound
 /// knows nothing: half of the answers would lie beyond it, and the law takes the part across the wall from the error of these, one of
 /// five.
-fn least(moments: [f64; 3]) -> f64 {
-    if moments[0] + moments[1] > moments[2] { 1.0 } else { 0.9_f64.sqrt() }
+fn squared_least(moments: [f64; 3]) -> f64 {
+    if moments[0] + moments[1] > moments[2] { 1.0 } else { 0.9 }
 }
 
 /// Records of a row from which on its own intervals tell something.
@@ -110,14 +110,17 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             made - differenced.answered,
         ]);
         if trials >= TELLING {
-            failures.extend(own.failures(least(BODIES[body].1)).map(|failure| format!("{name}: {failure}")));
+            failures.extend(
+                own.failures(squared_least(BODIES[body].1).sqrt())
+                    .map(|failure| format!("{name}: {failure}")),
+            );
         }
         if wrongly > allowed(trials) {
             failures.push(format!(
                 "{name}: {wrongly} of {trials} refused though the bound determines the tensor"
             ));
         }
-        leasts += made as f64 * least(BODIES[body].1).powi(2);
+        leasts += made as f64 * squared_least(BODIES[body].1);
         pooled.add(&own);
         pooled_differenced.add(&differenced);
         all.0 += made;
