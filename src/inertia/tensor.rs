@@ -172,7 +172,6 @@ impl Inertia {
     }
 
     /// The moments along the kernel's axes: as typed, or ascending along those of a tensor.
-    #[cfg(any(test, feature = "random"))]
     pub(crate) fn moments_along_axes(&self) -> [f64; 3] {
         self.moments.map(|i| i.hi() * self.scale)
     }
