@@ -17,7 +17,7 @@ use crate::likelihood::bend::beyond;
 use crate::likelihood::wheels::likeliest as with_wheels;
 use crate::models::equations::Equations;
 use crate::models::weighed::spread;
-use crate::physical::coordinates::Form;
+use crate::physical::coordinates::{Form, tensor};
 use crate::physical::failure::SolverFailure;
 use crate::physical::nearest::nearest;
 use crate::report::differing::differing;
@@ -238,8 +238,6 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         let added = of_tensor * of_tensor.transpose();
         spread + Form::from_fn(|i, k| added[(i, k)])
     });
-    let complete = |segment: Summary| segment.complete(deviation * deviation, &added);
-    let per_segment = per_segment.into_iter().map(complete).collect();
     let joint = match of_parts {
         Some(more) => joint.widened(&more).ok_or_else(information)?,
         None => joint,
@@ -253,6 +251,9 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         check_agreement(prior, agreed, &weak.x())?;
     }
     let answer = nearest(&told, &settings.limits, &dissipation)?;
+    let j = tensor(&answer.x);
+    let complete = |segment: Summary| segment.complete(&j, deviation * deviation, &added);
+    let per_segment = per_segment.into_iter().map(complete).collect();
     let facts = Facts {
         record,
         settings,

@@ -57,7 +57,7 @@ pub enum Warning {
     },
     /// The residuals ask for a torque at random, which is more than a small part of what drives the body.
     TorqueNoise {
-        /// Largest power spectral density of the angular acceleration among the segments, (rad/s²)² s.
+        /// Largest power spectral density of the angular acceleration among the segments, the mean of the three components, (rad/s²)² s.
         density: f64,
         /// Share of |dω/dt|² that free motion leaves unexplained, where it is known.
         unexplained: Option<f64>,
@@ -258,9 +258,9 @@ impl fmt::Display for Warning {
                 )
             }
             Self::TorqueNoise { density, unexplained } => {
-                write!(f, "torques at random are part of the fit, with a density of up to {density:.1e} (rad/s^2)^2 s")?;
+                write!(f, "torques at random are part of the fit: their angular acceleration has a density of up to {density:.1e} (rad/s^2)^2 s")?;
                 if let Some(share) = unexplained {
-                    write!(f, ": free motion leaves {} of the squared derivative of the rates unexplained", per_cent(*share))?;
+                    write!(f, ", and free motion leaves {} of the squared derivative of the rates unexplained", per_cent(*share))?;
                 }
                 f.write_str("; errors of the measurement may look like them")
             }
