@@ -29,7 +29,7 @@ use crate::report::parts::scatter;
 use crate::report::segments::{Summary, summaries};
 use crate::report::sensor::{ROTOR, suspect};
 use crate::report::systematic::errors;
-use crate::report::warnings::has_zero_inputs;
+use crate::report::warnings::{has_zero_inputs, of_record};
 use crate::settings::Settings;
 use crate::settings::sensor::SensorPriors;
 use crate::settings::torque::{TorqueModel, TorqueNoise};
@@ -171,7 +171,10 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
     let open = open_units(record, &stretches, motion.as_ref().filter(|_| settings.check_units), rms)?;
     // a quadrature over samples that are far apart is off by more than their noise
     let sparse = if open.is_none() { likeliest(record, settings) } else { None };
-    if let Some(estimate) = sparse {
+    if let Some(mut estimate) = sparse {
+        let left_out = of_record(record, &spikes, estimate.segments);
+        estimate.warnings = left_out.into_iter().chain(estimate.warnings).collect();
+        estimate.spikes = spikes;
         return Ok(Fitted { estimate, drawn: None });
     }
     if let Some(error) = hidden {

@@ -62,7 +62,7 @@ pub enum Warning {
         /// Share of |dω/dt|² that free motion leaves unexplained, where it is known.
         unexplained: Option<f64>,
     },
-    /// Segments were left out, as too short for the test functions.
+    /// Segments were left out as too short: for the test functions, or for a motion of their own.
     ShortSegments {
         /// Segments that were left out.
         short: usize,
@@ -265,7 +265,8 @@ impl fmt::Display for Warning {
                 f.write_str("; errors of the measurement may look like them")
             }
             Self::ShortSegments { short, segments } => {
-                write!(f, "{short} of {segments} segments are too short for the test functions")
+                let verb = if *short == 1 { "was" } else { "were" };
+                write!(f, "{short} of {segments} segments {verb} left out as too short for the fit")
             }
             Self::Residuals { times, noise } => {
                 let times = if *times < 1e4 { format!("{times:.1}") } else { format!("{times:.1e}") };
