@@ -248,8 +248,11 @@ fn under_torques(poses: &Poses, settings: &Settings) -> Result<Estimate, FitErro
 /// Refuses settings that have no meaning here.
 fn only_of_rates(poses: &Poses, settings: &Settings) -> Result<(), FitError> {
     let sensor = settings.sensor.named().into_iter();
-    let others =
-        [("the radius of test functions", settings.radius), ("the quantum of the rates", settings.quantum)];
+    let others = [
+        ("the radius of test functions", settings.radius),
+        ("the quantum of the rates", settings.quantum),
+        ("the noise of the rates", settings.noise.filter(|_| !poses.has_rates())),
+    ];
     if needs_smoother(settings) && poses.has_rates() {
         return Err(PoseFault::Torque.into());
     }

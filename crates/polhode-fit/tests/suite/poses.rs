@@ -508,3 +508,16 @@ fn a_segment_of_few_attitudes_is_told() {
     let whole = fit_poses(&poses, &Settings::default()).unwrap();
     assert!(!whole.warnings.iter().any(|warning| matches!(warning, Warning::ShortSegments { .. })));
 }
+
+/// Noise of rates has no meaning where there are none.
+#[test]
+fn noise_of_rates_that_are_not_there_is_refused() {
+    let toss = toss(ASYMMETRIC, 10.0, 30.0, 0.005, 1);
+    let settings = Settings::default().with_noise(0.02);
+    let refused = fit_poses(&toss.poses(), &settings);
+    let named = |fault: &PoseFault| matches!(fault, PoseFault::OnlyRates { name } if name.contains("noise"));
+    assert!(matches!(&refused, Err(FitError::Poses(fault)) if named(fault)), "{refused:?}");
+    let rates = toss.rates(|_| UnitQuaternion::identity(), 0.02);
+    let both = Poses::with_rates("both", &toss.times, &toss.measured, &rates).unwrap();
+    assert!(fit_poses(&both, &settings).is_ok());
+}

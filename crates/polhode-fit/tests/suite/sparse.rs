@@ -67,3 +67,24 @@ fn what_is_left_out_of_sparse_rates_is_told() {
     assert_eq!(e.warnings.iter().any(is_of_spikes), !e.spikes.is_empty());
     assert!(e.warnings.contains(&Warning::ShortSegments { short: 1, segments: 2 }), "{:?}", e.warnings);
 }
+
+/// The rounding of readings whose step is given is noise of the likelihood too.
+#[test]
+fn a_step_that_is_given_is_noise_of_sparse_rates() {
+    let (times, rates) = beacon(&Gyroscope::default().with_noise(0.01));
+    let record = Record::from_samples(&times, &rates).unwrap();
+    let plain = fit(&record, &Settings::default()).unwrap();
+    for (settings, noise) in [
+        (Settings::default().with_quantum(0.1), 0.1 / 12.0_f64.sqrt()),
+        (Settings::default().with_quantum(0.1).with_noise(0.02), (0.01_f64 / 12.0 + 4e-4).sqrt()),
+    ] {
+        let told = fit(&record, &settings).unwrap();
+        assert!(plain.method == Method::ExactMotion && told.method == Method::ExactMotion);
+        assert_eq!((plain.quanta, told.quanta), ([0.0; 3], [0.1; 3]));
+        assert!((told.noise_sigma / noise - 1.0).abs() < 1e-6, "{} for {noise}", told.noise_sigma);
+        for k in 0..3 {
+            assert!((told.principal[k] - plain.principal[k]).abs() < 0.1 * plain.sigma_principal[k]);
+            assert!(told.sigma_principal[k] > 2.0 * plain.sigma_principal[k]);
+        }
+    }
+}
