@@ -238,6 +238,14 @@ fn doubts_about_a_likelihood_are_warned_of_with_their_numbers() {
     ];
     assert_eq!(of_likelihood(&e, &Doubts { misfit: Some(9.0), outliers: 3, ..none }), expected);
     assert_eq!(of_smoothed(&e, Some(9.0), 0.0), expected);
+    // chance brings more in few numbers: five deviations of what neighbours tell of the noise
+    let is_told = |dof: usize, misfit: f64| {
+        let e = Estimate { dof, ..e.clone() };
+        let list = of_likelihood(&e, &Doubts { misfit: Some(misfit), ..none });
+        list.iter().any(|warning| matches!(warning, Warning::AttitudeResiduals { .. }))
+    };
+    assert!(!is_told(160, 2.2) && is_told(160, 2.3));
+    assert!(!is_told(1_000_000, 1.19) && is_told(1_000_000, 1.21));
 }
 
 fn open(singular: [f64; 5], scatter: Matrix3<f64>) -> Identifiability {

@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use polhode::record::{Record, Segment, Spike};
 
 use crate::models::reading_error::ReadingError;
+use crate::poses::free::by_chance;
 use crate::report::attitudes::AttitudeFit;
 use crate::report::differing::Differing;
 use crate::report::estimate::Estimate;
@@ -199,8 +200,8 @@ pub(super) fn of_likelihood(e: &Estimate, doubts: &Doubts) -> Vec<Warning> {
         if turn > DOUBTFUL {
             list.push(Warning::CoarseAttitudes { turn });
         }
-        let times = misfit.map_or(1.0, f64::sqrt);
-        if times * times > RESIDUALS {
+        let most = by_chance(e.dof as f64).max(RESIDUALS);
+        if let Some(times) = misfit.filter(|misfit| *misfit > most).map(f64::sqrt) {
             list.push(Warning::AttitudeResiduals { times, noise: noise_sigma / times });
         }
         if let Some(alignment) = attitudes.alignment.filter(|alignment| alignment.moving_gain > MOVING) {
