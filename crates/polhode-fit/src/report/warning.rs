@@ -5,6 +5,7 @@ use core::fmt;
 use crate::error::{per_cent, with_sigma};
 use crate::models::reading_error::ReadingError;
 use crate::physical::constraint::ActiveConstraint;
+use crate::report::next_step::Origin;
 use crate::report::nuisance::FittedTorque;
 use crate::report::parts::{Halves, Scatter};
 use crate::report::torque_free::{InvariantTrend, Memory, Whiteness};
@@ -140,8 +141,8 @@ pub enum Warning {
         unit: &'static str,
         /// Gain of log-likelihood with it, the torque noise as it was fitted without it.
         gain: f64,
-        /// What helps, in words that go on from what the tensor may be.
-        remedy: &'static str,
+        /// Where it comes from.
+        origin: Origin,
     },
     /// Two parts of the record contradict each other.
     Halves(Halves),
@@ -334,13 +335,14 @@ impl fmt::Display for Warning {
                  turn the body by {turn:.2} rad within half of the longest segment: fit shorter windows, in which it turns the body by less than \
                  {LINEAR} rad, with a constant torque, or the rates"
             ),
-            Self::LeftOut { what, size, unit, gain, remedy } => {
+            Self::LeftOut { what, size, unit, gain, origin } => {
                 let size = format!("{size:.1e} {unit}");
                 write!(
                     f,
                     "{what}, up to {}, would explain the record better than what was fitted (log-likelihood higher by {gain:.0}): \
-                     the tensor may be off by more than its deviations{remedy}",
-                    size.trim_end()
+                     the tensor may be off by more than its deviations{}",
+                    size.trim_end(),
+                    origin.remedy()
                 )
             }
             Self::Halves(Halves { share, first, second, chi2 }) => write!(

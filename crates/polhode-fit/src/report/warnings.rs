@@ -149,8 +149,8 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     if noise_found && density > 0.0 && e.unexplained.is_none_or(|share| share > UNEXPLAINED) {
         list.push(Warning::TorqueNoise { density, unexplained: e.unexplained });
     }
-    if let Some(&Suspect { what, remedy, size, unit, gain, .. }) = suspect {
-        list.push(Warning::LeftOut { what, size, unit, gain, remedy });
+    if let Some(&Suspect { what, origin, size, unit, gain, .. }) = suspect {
+        list.push(Warning::LeftOut { what, size, unit, gain, origin });
     }
     list.extend(halves(weak, grounds.variance * misfit.max(1.0)).map(Warning::Halves));
     list.extend(grounds.scatter.map(Warning::Scatter));
