@@ -21,7 +21,7 @@ use nalgebra::Vector3;
 use polhode_files::error::{Error, warn};
 use polhode_files::inputs as opened;
 use polhode_files::numbers::{numbers, positive};
-use polhode_fit::{Limit, Settings, fit, fit_poses};
+use polhode_fit::{Limit, Method, Settings, TorqueModel, fit, fit_poses};
 use polhode_pages::document::Form;
 use polhode_pages::output::Output;
 use polhode_pages::table::Format;
@@ -197,7 +197,8 @@ impl Fit {
                     )?)?;
                 }
                 if let Some(facts) = facts {
-                    output.write_whole(&facts.report(&record, &spans, (&as_read, &reason), format))?;
+                    let method = self.method(read.is_some());
+                    output.write_whole(&facts.report(&record, &spans, (&as_read, &reason, method), format))?;
                 }
                 let message = format!("{}: {reason}", self.names());
                 return Err(if failed { Error::Failed(message) } else { Error::Input(message) });
@@ -250,6 +251,15 @@ impl Fit {
             crate::plot::write(file, picture, &page::figures::overview(&estimate, &motion, &record))?;
         }
         Ok(())
+    }
+
+    /// By which method a record without an answer was fitted.
+    fn method(&self, has_attitudes: bool) -> Method {
+        match (has_attitudes, TorqueModel::from(self.torque)) {
+            (false, _) => Method::WeakForm,
+            (true, TorqueModel::Drag3 | TorqueModel::Quadratic) => Method::Smoother,
+            (true, _) => Method::ExactMotion,
+        }
     }
 
     fn settings(&self) -> Result<Settings, Error> {

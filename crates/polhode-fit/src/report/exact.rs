@@ -175,6 +175,7 @@ pub(crate) fn report(
         misfit,
         widened: widened.filter(|_| !free.followed.beyond.is_empty()),
         constant: alternatives.and_then(|found| left_out(&free.followed, &found.constant)),
+        outliers: outliers(free),
     };
     estimate.warnings = of_likelihood(&estimate, &doubts);
     Ok(estimate)
@@ -369,6 +370,12 @@ fn summaries(free: &Free, information: &Information) -> Vec<SegmentSummary> {
     each
 }
 
+/// Samples that jump or stand out of the motion.
+fn outliers(free: &Free) -> usize {
+    let out = free.followed.tracks.iter().flat_map(|track| &track.used).filter(|used| !**used);
+    free.read.jumps + out.count()
+}
+
 fn attitudes(
     repeated: usize,
     settings: &Settings,
@@ -376,7 +383,6 @@ fn attitudes(
     told: Told,
     information: &Information,
 ) -> AttitudeFit {
-    let out = free.followed.tracks.iter().map(|t| t.used.iter().filter(|used| !**used).count());
     AttitudeFit {
         noise_sigma: information.levels.attitude,
         noise_is_given: settings.attitude_noise.is_some(),
@@ -385,7 +391,7 @@ fn attitudes(
         is_inverse: told.is_inverse,
         direction_gain: told.gain,
         largest_turn: free.read.largest_turn,
-        left_out: free.read.jumps + out.sum::<usize>(),
+        left_out: outliers(free),
         repeated,
         alignment: free.read.has_rates.then(|| alignment(free, information)),
     }
