@@ -82,7 +82,8 @@ pub(crate) fn report(
     let (sigma_principal, sigma_axes) = sigmas(&on_face, &v, &moments);
     let ratios = ratios(&on_face, &v, &moments);
     let (j, both) = (shape.tensor(), on_face * on_face.transpose());
-    let (inertia, inertia_covariance) = absolute(settings, &rates, read.unit, &j, &both, &answer.x)?;
+    let (inertia, inertia_covariance) =
+        absolute(settings, (&rates, 0.0), read.unit, chosen.model, &j, &both, &answer.x)?;
     let residuals: Vec<Residuals> = found
         .whitened
         .iter()

@@ -114,8 +114,7 @@ impl Facts {
     }
 
     pub(super) fn several() -> Self {
-        let open =
-            "the ratios of the moments, and other axes: very different bodies follow the samples nearly as well";
+        let open = "the ratios of the moments, and other axes: very different bodies follow the samples nearly as well";
         Facts::nothing(open, "throw the body with a larger wobble, or record longer")
     }
 
