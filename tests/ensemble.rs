@@ -447,6 +447,11 @@ fn the_failure_of_one_is_a_row_of_its_own() {
         for (time, step) in [0, 100, 1000].into_iter().enumerate() {
             assert!(rows.states(time).iter().all(State::is_finite), "after {step} steps");
         }
+        // of times that there are not
+        for time in [3, usize::MAX / 2, usize::MAX] {
+            assert!(rows.states(time).is_empty() && rows.omegas(time).is_empty());
+            assert!(rows.errors(time).is_none() && rows.attitude_errors(time).is_none());
+        }
         Ok::<(), EnsembleError>(())
     });
     done.unwrap();

@@ -209,6 +209,23 @@ fn energy_and_momentum_of_64_bodies_have_no_bias_after_a_hundred_thousand_steps(
     }
 }
 
+/// A point that has taken fewer steps than the one that was opened begins an orbit of its own.
+#[test]
+fn an_earlier_point_is_moved_as_one_that_was_opened() {
+    let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0]).unwrap());
+    let state = State { attitude: Quat::identity(), momentum_body: Vec3([0.4, 2.0, -0.9]) };
+    let start = body.enter(&state).unwrap().to_f64();
+    let prepared = || ExactStep.prepare_f64(Clock::new(0.1), &body).unwrap();
+    let (mut step, mut late) = (prepared(), start);
+    step.steps(&mut late, 100);
+    step.open(&mut late);
+    let (mut other, mut early, mut alone) = (prepared(), start, start);
+    step.advance(&mut early, 10);
+    other.open(&mut alone);
+    other.advance(&mut alone, 10);
+    assert_eq!(early, alone);
+}
+
 /// In double-double the same steps are good to its digits, so that the rational map itself is exact.
 #[test]
 fn the_map_is_exact_in_double_double() {

@@ -15,7 +15,7 @@ use polhode::inertia::{
     Surface, Twin, diagnose,
 };
 use polhode::method::schemes::{Pairs, Part, Scheme, Stages};
-use polhode::method::{Claimed, method};
+use polhode::method::{Claimed, PhaseError, UnknownMethod, method};
 use polhode::num::elliptic::{Modulus, incomplete, jacobi, r_c, r_d, r_f, r_j};
 use polhode::num::{Dd, Expansion, Precise, Random, Real, trig};
 use polhode::rotation::{Quat, Vec3};
@@ -482,6 +482,19 @@ fn rotors_and_their_flows() {
         }
         Ok(())
     });
+}
+
+/// What may follow the base of a name, thousands of times: no call for each, which would fill the stack.
+#[test]
+fn names_of_methods() {
+    for part in ["+phase", ":10", "+phase@kahan-li-8", ":", "@"] {
+        let name = format!("rattle{}", part.repeat(20_000));
+        assert!(method(&name).is_err(), "{part}");
+    }
+    let often = method(&format!("rattle{}", "+phase".repeat(20_000)));
+    let Err(error) = often else { panic!("what is taken back is so once") };
+    assert!(matches!(error, UnknownMethod::Phase(PhaseError::TakenBack { .. })), "{error:?}");
+    refused(&error).unwrap();
 }
 
 #[test]

@@ -325,6 +325,13 @@ fn bad_input_is_named() {
         message(Solid::Torus { ring: 1.0, tube: 1.0 }.with(Amount::Mass(1.0))),
         "torus: tube radius 1 must be below ring radius 1"
     );
+    let layer = |inner: f64| {
+        let refused = Region::Layer { inner, outer: 2.0 }.filled(|_| 1.0, 1e-6).unwrap_err();
+        refused.to_string()
+    };
+    assert_eq!(layer(-1.0), "inner radius is -1; it must be zero or a finite number above zero");
+    assert_eq!(layer(f64::NAN), "inner radius is NaN; it must be zero or a finite number above zero");
+    assert_eq!(layer(2.0), "layer: inner radius 2 must be below outer radius 2");
     let named = |name: &str, sizes: &[f64]| Solid::named(name, sizes).unwrap_err().to_string();
     assert_eq!(
         named("cube", &[1.0]),

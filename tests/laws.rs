@@ -476,6 +476,9 @@ fn a_run_is_taken_up_only_by_its_method_and_body() {
         (text.replace("residual", "rest"), text.lines().count()),
         (format!("{text}more\n"), text.lines().count() + 1),
         (text.replace("worst -", "worst NaN"), text.lines().count() - 2),
+        (text.replace("steps 10", "steps 18446744073709551615"), text.lines().count() - 5),
+        (text.replace("flips ", "flips 9007199254740993"), text.lines().count() - 1),
+        (text.replace("residual 0.0", "residual NaN"), text.lines().count()),
     ] {
         let error = broken.parse::<polhode::run::Checkpoint>().unwrap_err().to_string();
         assert!(error.starts_with(&format!("line {line} of the checkpoint is")), "{error}");

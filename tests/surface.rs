@@ -72,6 +72,23 @@ fn a_hull_holds_every_point_and_its_volume_is_that_of_the_solid() {
 }
 
 #[test]
+fn a_hull_out_of_range_is_refused_for_its_size() {
+    for size in [1e-130, 1e130] {
+        let corners = [[0.0; 3], [size, 0.0, 0.0], [0.0, size, 0.0], [0.0, 0.0, size]].map(Vector3::from);
+        let [o, x, y, z] = corners;
+        let surface = Surface::new([[o, y, x], [o, x, z], [o, z, y]]).unwrap();
+        let closed = surface.closed(FLOAT_WELD, Closing::Hull).map(|(mesh, _)| mesh.volume());
+        let volume = |hull: Result<Surface, MeshError>| hull?.mesh().map(|mesh| mesh.volume());
+        let hulls = [Surface::hull_of(&corners), surface.hull()].map(volume);
+        for found in hulls.into_iter().chain([closed]) {
+            assert!(matches!(found, Err(MeshError::OutOfRange { .. })), "{size}: {found:?}");
+        }
+    }
+    // points that are one span nothing, wherever they are
+    assert!(matches!(Surface::hull_of(&[Vector3::repeat(1e130); 4]), Err(MeshError::Flat)));
+}
+
+#[test]
 fn what_export_tears_is_mended_and_said() {
     // every facet with corners of its own, rounded to single precision in another place
     let torn: Vec<Triangle> = cube(3)

@@ -288,6 +288,23 @@ fn tables_that_cannot_be_used_are_refused() {
     }
 }
 
+#[test]
+fn a_fit_from_a_guess_of_another_body_is_a_motion_of_the_body_asked_for() {
+    let (inertia, motion, table) = looks(20);
+    let start = motion.at(0.0).unwrap().rotation();
+    let guess = FreeMotion::from_omega(&body([1.0, 2.1, 3.0]), start, [1.41, 1.0, -0.3].into()).unwrap();
+    let fit = FreeMotion::fitted(&inertia, &table, 1e-3, &guess).unwrap();
+    assert_eq!(fit.motion.body().inertia(), &inertia);
+    let missed = (fit.motion.omega_at(0.0).unwrap() - motion.omega_at(0.0).unwrap()).norm();
+    assert!(missed < 1e-9, "{missed:.1e}");
+    // the motion that the table is of, whose body is not the one that is asked for
+    let other = body([1.0, 2.2, 3.0]);
+    match FreeMotion::fitted(&other, &table, 1e-3, &motion) {
+        Ok(fit) => assert_eq!(fit.motion.body().inertia(), &other),
+        Err(error) => assert!(matches!(error, ThroughError::NotConverged { .. }), "{error}"),
+    }
+}
+
 #[cfg(feature = "random")]
 #[test]
 fn a_fit_through_noisy_attitudes_has_the_errors_that_its_covariance_states() {

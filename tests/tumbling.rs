@@ -163,6 +163,9 @@ fn elements_without_a_motion_are_refused() {
     let oblate = Inertia::from_moments([1.0, 1.0, 2.0]).unwrap();
     let refused = elements(Mode::LongAxis, 1.0, 5.0).point(&oblate).unwrap_err();
     assert!(refused.to_string().contains("no long-axis motion with the moments 1, 1, 2"), "{refused}");
+    let falling = Inertia::from_moments([3.0, 2.0, 2.0]).unwrap();
+    let refused = elements(Mode::LongAxis, 10.0, 20.0).point(&falling).unwrap_err();
+    assert!(refused.to_string().contains("no long-axis motion with the moments 3, 2, 2"), "{refused}");
     for bad in [elements(Mode::ShortAxis, 0.0, 5.0), elements(Mode::ShortAxis, 1.0, f64::NAN)] {
         assert!(matches!(bad.point(&apophis), Err(TumblingError::Value { .. })));
     }

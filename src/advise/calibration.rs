@@ -9,6 +9,7 @@ use super::reference::{Reference, Span};
 use super::trial::{SAME_RUN, Trial, trial};
 use super::{Advice, AdviseError, Choice, Demand, Predicted, Progress, Setting};
 use crate::body::Body;
+use crate::rotation::rotation_angle;
 
 /// The longest run of a candidate on a body whose motion has a closed form, s of processor time.
 const AFFORDABLE: f64 = 3.0;
@@ -199,7 +200,7 @@ impl<'a> Calibration<'a> {
         });
         let seconds = seconds.fold(f64::INFINITY, f64::min);
         let exact = self.body.leave(&motion.point_at_dd(self.demand.until.into()));
-        let error = state.rotation().angle_to(&exact.rotation());
+        let error = rotation_angle(state.attitude, exact.attitude);
         if error > self.demand.attitude_error {
             return Vec::new();
         }

@@ -6,6 +6,7 @@ use super::{AdviseError, Choice, Demand, Progress, Setting};
 use crate::body::{Body, Clock, State};
 use crate::method::method;
 use crate::num::Dd;
+use crate::rotation::rotation_angle;
 use crate::run::{Run, Watch};
 use crate::truth::evenly;
 
@@ -61,7 +62,7 @@ pub fn check_telling(
         for k in 1..=LOOKS {
             let t = clock.elapsed(k).hi();
             let (Ok(state), exact) = (motion.at(t), motion.point_at_dd(Dd::from(t))) else { continue };
-            worst = worst.max(state.rotation().angle_to(&body.leave(&exact).rotation()));
+            worst = worst.max(rotation_angle(state.attitude, body.leave(&exact).attitude));
         }
         return Ok(worst);
     }

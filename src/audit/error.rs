@@ -40,6 +40,12 @@ pub enum AuditError {
         /// The time before, s.
         previous: f64,
     },
+    /// Numbers without a digit.
+    #[error("the {column} is told to have 0 significant digits; a number has at least one")]
+    NoDigits {
+        /// Which column.
+        column: &'static str,
+    },
     /// A number that is not finite.
     #[error("row {row}: the {column} has the value {value}; every number must be finite")]
     NotFinite {

@@ -112,7 +112,8 @@ impl Writing {
         if self.single_precision {
             return f64::from(f32::EPSILON) / 2.0;
         }
-        (0..self.digits.min(ALL_DIGITS) - 1).fold(0.5_f64, |unit, _| unit / 10.0).max(f64::EPSILON / 2.0)
+        let more = self.digits.min(ALL_DIGITS).saturating_sub(1);
+        (0..more).fold(0.5_f64, |unit, _| unit / 10.0).max(f64::EPSILON / 2.0)
     }
 }
 

@@ -12,10 +12,16 @@ const NEAR: f64 = 0.01;
 
 /// Length of a step, s, of a record whose times are counts of steps: the median of the turn between rows over the rate there.
 ///
-/// The quaternions are scalar first, from body to space; rates and momenta are along the axes of space. `None` where the body
-/// turns too far between rows, or where the record has no rates and no momenta with a body.
+/// The quaternions are scalar first, from body to space; rates and momenta are along the axes of space. Rates are in rad/s, momenta
+/// in the unit of the body's inertia times rad/s. `None` where the body turns too far between rows, where the record has no rates
+/// and no momenta with a body, and where its columns and its times differ in length.
 pub fn step_length(record: &Trajectory, body: Option<&Body>) -> Option<f64> {
     let Some(Attitudes::Quaternions(rows)) = &record.attitude else { return None };
+    let length = |column: &Option<Vec<[f64; 3]>>| column.as_ref().map_or(rows.len(), Vec::len);
+    let lengths = [record.times.len(), length(&record.rates), length(&record.momentum)];
+    if lengths.iter().any(|length| *length != rows.len()) {
+        return None;
+    }
     let attitude = |k: usize| Quat::from_components(rows[k]).normalized();
     let inverse = body.and_then(|body| body.inertia().tensor().try_inverse());
     let speed = |k: usize| -> Option<f64> {
@@ -65,5 +71,11 @@ mod tests {
             .with_rates(vec![[0.0, 0.0, 0.5]; 20]);
         assert_eq!(step_length(&record, None), Some(0.005));
         assert_eq!(rounded(0.002_504), 0.0025);
+        let with = |times: usize, rates: usize| {
+            let mut other = record.clone().with_rates(vec![[0.0, 0.0, 0.5]; rates]);
+            other.times.truncate(times);
+            step_length(&other, None)
+        };
+        assert_eq!((with(20, 20), with(20, 19), with(19, 20)), (Some(0.005), None, None));
     }
 }

@@ -132,7 +132,7 @@ impl Trajectory {
     ///
     /// # Errors
     /// Fewer than [`FEWEST_ROWS`] rows, columns of other lengths, times that do not ascend, numbers that are not finite,
-    /// attitudes of zeros, and a record of times alone.
+    /// attitudes of zeros, numbers of no significant digit, and a record of times alone.
     pub fn check(&self) -> Result<(), AuditError> {
         let rows = self.times.len();
         if rows < FEWEST_ROWS {
@@ -150,6 +150,14 @@ impl Trajectory {
             if let Some(found) = length.filter(|length| *length != rows) {
                 return Err(AuditError::Lengths { column, found, rows });
             }
+        }
+        let digits = [
+            ("attitude", self.digits.attitude),
+            ("angular velocity", self.digits.rates),
+            ("angular momentum", self.digits.momentum),
+        ];
+        if let Some((column, _)) = digits.into_iter().find(|(_, digits)| *digits == Some(0)) {
+            return Err(AuditError::NoDigits { column });
         }
         if let Some(row) = self.times.iter().position(|t| !t.is_finite()) {
             return Err(AuditError::NotFinite { column: "time", row, value: self.times[row] });

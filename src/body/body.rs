@@ -303,18 +303,21 @@ impl Body {
     }
 
     /// Kinetic and potential energy, J, at the time 0, where a potential depends on the time.
+    ///
+    /// The kinetic energy is ½ ω·Iω with the tensor of [`inertia`](Self::inertia). What the spin of a wheel adds is left out: l²/2J of one
+    /// that turns freely or is driven, J Ω (a·ω + Ω/2) of one that is held.
     #[must_use]
     pub fn energy(&self, x: &State) -> f64 {
         self.energy_at(0.0, x)
     }
 
-    /// Kinetic and potential energy, J, at the time `t`, s.
+    /// Kinetic and potential energy, J, at the time `t`, s; as [`energy`](Self::energy), without that of the spin of wheels.
     #[must_use]
     pub fn energy_at(&self, t: f64, x: &State) -> f64 {
         self.energy_of(Time::from_seconds(t), &self.inside(x)).hi()
     }
 
-    /// Kinetic and potential energy, J, of a point of the solver frame.
+    /// Kinetic and potential energy, J, of a point of the solver frame; as [`energy`](Self::energy), without that of the spin of wheels.
     pub fn energy_of<S: Precise>(&self, at: Time, x: &Point<S>) -> Dd {
         self.scaled_energy(at, &x.to_dd()) * self.scale()
     }

@@ -69,9 +69,9 @@ pub trait Torque<S: Real>: Send + Sync {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Conserved {
-    /// Kinetic and potential energy.
+    /// Kinetic and potential energy, without that of the spin of wheels: [`Body::energy`](super::Body::energy).
     Energy,
-    /// |m|.
+    /// |L|, the length of the angular momentum of body and wheels.
     MomentumNorm,
     /// The angular momentum L in space, as a vector.
     Momentum,

@@ -120,7 +120,10 @@ impl Region {
             }
             Region::Layer { inner, outer } => {
                 length("outer radius", outer)?;
-                if !(0.0..outer).contains(&inner) {
+                if inner.is_nan() || inner < 0.0 {
+                    return Err(MassError::Negative { quantity: "inner radius", value: inner });
+                }
+                if inner >= outer {
                     return Err(MassError::Sizes {
                         shape: "layer",
                         small_name: "inner radius",

@@ -104,6 +104,14 @@ pub enum MassError {
         /// The offending value.
         value: f64,
     },
+    /// A length that may be zero is negative, or no number.
+    #[error("{quantity} is {}; it must be zero or a finite number above zero", Shown(*value))]
+    Negative {
+        /// What was measured.
+        quantity: &'static str,
+        /// The offending value.
+        value: f64,
+    },
     /// A coordinate is not a finite number.
     #[error("{quantity} has the component {value}; every component must be a finite number")]
     NotFinite {

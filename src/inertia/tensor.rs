@@ -52,7 +52,7 @@ impl Inertia {
     ///
     /// # Errors
     /// A moment that is not finite, not positive, or less than 2⁻²⁰⁰ of the largest; moments that break a triangle
-    /// inequality.
+    /// inequality. Moments below 2.2e-308, which [`from_tensor`](Self::from_tensor) refuses, are taken as they are typed.
     pub fn from_moments(moments: [f64; 3]) -> Result<Self, InertiaError> {
         let inertia = Self::from_positive_moments(moments)?;
         check_triangle(moments.map(|i| i / inertia.scale), inertia.scale)?;
@@ -87,8 +87,8 @@ impl Inertia {
     /// Differences across the diagonal below 1e-12 of the trace are taken for rounding and averaged.
     ///
     /// # Errors
-    /// Entries that are not finite, a tensor that is not symmetric, a moment outside the range of a double, moments that are not
-    /// positive, break a triangle inequality, or are less than 2⁻²⁰⁰ of the largest.
+    /// Entries that are not finite, a tensor that is not symmetric, a moment outside the range in which a double has all its digits,
+    /// from 2.2e-308 on, moments that are not positive, break a triangle inequality, or are less than 2⁻²⁰⁰ of the largest.
     pub fn from_tensor(tensor: Matrix3<f64>) -> Result<Self, InertiaError> {
         check_symmetric(&tensor)?;
         Self::of_spectrum(tensor, Spectrum::of_finite(&tensor))
@@ -172,7 +172,6 @@ impl Inertia {
     }
 
     /// The moments along the kernel's axes: as typed, or ascending along those of a tensor.
-    #[cfg(any(test, feature = "random"))]
     pub(crate) fn moments_along_axes(&self) -> [f64; 3] {
         self.moments.map(|i| i.hi() * self.scale)
     }

@@ -12,7 +12,7 @@ use crate::num::Precise;
 ///
 /// The loss δ is the share by which the body turns across its angular momentum beside I⁻¹m; the energy above that of the steady spin
 /// about the axis of the largest moment then falls, next to that spin, at the mean rate δ |m| (1/I_a + 1/I_b − 2/I_max). L in space is kept to
-/// rounding, and the energy never rises. It solves another problem than the methods of the [catalogue](super::without_projections), and is none of them.
+/// rounding, and the energy never rises. It solves another problem than the methods of the [catalogue](super::catalogue()), and is none of them.
 ///
 /// ```
 /// use polhode::body::Conserved;

@@ -113,7 +113,9 @@ impl<S: Precise> Map<S> for ExactStepMap<S> {
     #[inline]
     fn advance(&mut self, at: Time, x: &mut Point<S>) {
         let Some(opened) = &self.opened else { return self.apply(at, x) };
-        let n = x.steps() - opened.steps + 1;
+        // a point before the one that was opened begins anew
+        let Some(taken) = x.steps().checked_sub(opened.steps) else { return self.apply(at, x) };
+        let n = taken + 1;
         match &opened.addition {
             Some(addition) if !n.is_multiple_of(RENEW_EVERY) => addition.advance(x),
             _ => Self::renew(self.h, opened, n, x),

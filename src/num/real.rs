@@ -58,7 +58,7 @@ pub trait Real:
     fn sqrt(self) -> Self;
     /// Sine and cosine of an angle in radians, the same bits on every CPU.
     fn sin_cos(self) -> (Self, Self);
-    /// `sin x` and `1 − cos x` of an angle in radians; of `f64` the second without cancellation.
+    /// `sin x` and `1 − cos x` of an angle in radians; of `f64` the second without cancellation up to |x| = π/4.
     #[inline]
     fn sin_versine(self) -> (Self, Self) {
         let (s, c) = self.sin_cos();

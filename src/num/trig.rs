@@ -48,7 +48,8 @@ pub(crate) fn sin_cos_moderate(x: f64) -> (f64, f64) {
     kernel::<false>(x, 0.0)
 }
 
-/// `sin x` and `1 − cos x` of `x` radians, the second without cancellation; NaN unless `x` is finite.
+/// `sin x` and `1 − cos x` of `x` radians; NaN unless `x` is finite. The second is without cancellation up to |x| = π/4; next to a
+/// whole turn it has the absolute error of `1 − cos x`.
 #[inline]
 #[must_use]
 pub fn sin_versine(x: f64) -> (f64, f64) {

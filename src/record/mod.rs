@@ -152,6 +152,12 @@ impl Record {
         self.count(|finding| *finding == Finding::Merged)
     }
 
+    /// Time of the first of them, s.
+    #[doc(hidden)]
+    pub fn first_merged(&self) -> Option<f64> {
+        self.findings.iter().find(|(_, finding)| *finding == Finding::Merged).map(|(time, _)| *time)
+    }
+
     /// Number of samples left out because they repeat the reading before: a log that is written faster than its sensor reads.
     ///
     /// ```

@@ -24,7 +24,8 @@ pub struct Directions {
 }
 
 impl Directions {
-    /// Of vectors of any length; `None` where there is none, or where their directions add up to zero.
+    /// Of vectors of any lengths from 1e-130 to 1e130, beyond which squares leave the range of a double; `None` where there is none, or
+    /// where their directions add up to zero.
     #[must_use]
     pub fn of(vectors: &[Vec3<f64>]) -> Option<Self> {
         let unit = |vector: &Vec3<f64>| *vector * (1.0 / vector.norm());

@@ -182,6 +182,16 @@ fn finite(text: &str) -> Option<f64> {
     text.parse().ok().filter(|x: &f64| x.is_finite())
 }
 
+/// A count of steps, or of what happens once a step at most: as in a [`Schedule`](super::Schedule), no more than 2⁵³.
+fn count(text: &str) -> Option<u64> {
+    text.parse().ok().filter(|count: &u64| *count <= 1 << 53)
+}
+
+/// Infinite where an implicit step had no solution.
+fn residual(text: &str) -> Option<f64> {
+    text.parse().ok().filter(|residual: &f64| *residual >= 0.0)
+}
+
 fn doubles<const N: usize>(text: &str) -> Option<[f64; N]> {
     text.split(' ').map(finite).collect::<Option<Vec<f64>>>()?.try_into().ok()
 }
@@ -214,7 +224,7 @@ fn flips(text: &str) -> Option<(u64, Option<bool>)> {
         "-" => Some(false),
         _ => return None,
     };
-    Some((flips.parse().ok()?, positive))
+    Some((count(flips)?, positive))
 }
 
 impl FromStr for Checkpoint {
@@ -239,13 +249,13 @@ impl FromStr for Checkpoint {
             watched,
         )?;
         let first = lines.parsed("start", "it must hold 14 numbers", doubles)?;
-        let steps = lines.parsed("steps", "it must hold the number of steps", |text| text.parse().ok())?;
+        let steps = lines.parsed("steps", "it must hold the number of steps, at most 2^53", count)?;
         let point = lines.parsed("point", "it must hold 14 numbers", doubles)?;
         let method_memory =
             lines.parsed("memory", "it must hold numbers, or - where there are none", memory)?;
         let worst = lines.parsed("worst", "it must hold 5 errors, - where there is none", errors)?;
         let (flips, positive) = lines.parsed("flips", "it must hold a count and a sign", flips)?;
-        let residual = lines.parsed("residual", "it must hold a number", |text| text.parse().ok())?;
+        let residual = lines.parsed("residual", "it must hold a number from 0 on", residual)?;
         if let Some(line) = lines.lines.next() {
             lines.taken += 1;
             return Err(lines.refused(line, "the line before is the last"));

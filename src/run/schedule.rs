@@ -74,7 +74,10 @@ pub enum ScheduleError {
         t: f64,
     },
     /// A time lies before the one that precedes it, or before the start.
-    #[error("time {} s comes after {} s; steps lead to ascending times from the start on", Shown(*t), Shown(*before))]
+    #[error(
+        "no steps lead from {} s to {} s; times follow each other in the direction of the steps, from the start on",
+        Shown(*before), Shown(*t)
+    )]
     NotAscending {
         /// The time, s.
         t: f64,
@@ -227,6 +230,8 @@ mod tests {
         }
         assert!(matches!(at(0.5, &[f64::NAN]), ScheduleError::NotFinite { .. }));
         assert!(matches!(at(0.5, &[0.5]), ScheduleError::NotAscending { before: 1.0, .. }));
+        let backwards = at(0.5, &[-1.0]).to_string();
+        assert!(backwards.starts_with("no steps lead from 1 s to -1 s; "), "{backwards}");
         assert!(matches!(at(0.5, &[2.0, 1.5]), ScheduleError::NotAscending { before: 2.0, .. }));
         assert_eq!(at(0.5, &[2.2]), ScheduleError::NotReached { t: 2.2, step: 0.5, nearest: 2.0 });
         assert!(matches!(at(1e-17, &[2.0]), ScheduleError::TooMany { .. }));

@@ -54,7 +54,8 @@ fn along(
 }
 
 /// The Magnus rule that leaves these readings the least error: of orders 2, 4 and 6 (or of `order` alone) and some numbers of samples
-/// (or of `samples` alone), the one with the least mean of truncation² + random walk² over its first 1000 samples.
+/// (or of `samples` alone), the one with the least mean of truncation² + 3 random walk², the variance of all three
+/// components, over its first 1000 samples.
 ///
 /// A wide polynomial follows a fast motion better, and amplifies noise where the body turns far between samples.
 ///

@@ -267,12 +267,16 @@ fn offset(text: &str) -> Result<i64, &'static str> {
     let (sign, digits) = text.split_at(1);
     let digits = digits.replace(':', "");
     let number = digits.bytes().all(|b| b.is_ascii_digit()).then(|| digits.parse::<i64>().ok()).flatten();
-    let minutes = match (number, digits.len()) {
-        (Some(hours), 1 | 2) => 60 * hours,
-        (Some(both), 4) => 60 * (both / 100) + both % 100,
+    let (hours, minutes) = match (number, digits.len()) {
+        (Some(hours), 1 | 2) => (hours, 0),
+        (Some(both), 4) => (both / 100, both % 100),
         _ => return Err("an offset is written +hh:mm"),
     };
-    Ok(if sign == "-" { -60 * minutes } else { 60 * minutes })
+    if hours > 23 || minutes > 59 {
+        return Err("the hours of an offset run to 23 and its minutes to 59");
+    }
+    let seconds = 60 * (60 * hours + minutes);
+    Ok(if sign == "-" { -seconds } else { seconds })
 }
 
 #[cfg(test)]
@@ -340,6 +344,9 @@ mod tests {
             ("2016-12-31T23:59:59 GMT", "time scale"),
             ("2016-12-31T23:59:59Z TDB", "Z and offsets"),
             ("2025-04-01T10:00+1:2:3x", "offset"),
+            ("2025-04-01T10:00+99:99", "hours of an offset"),
+            ("2025-04-01T10:00-24", "hours of an offset"),
+            ("2025-04-01T10:00+0160", "hours of an offset"),
             ("yesterday", "no day"),
             ("1-2-3-4", "no day"),
             ("1e300", "no such Julian date"),

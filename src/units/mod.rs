@@ -145,8 +145,9 @@ impl RateUnit {
     /// The unit of that name: rad/s, deg/s (°/s, dps), rpm.
     pub fn named(name: &str) -> Option<Self> {
         match plain(name).as_str() {
-            "rad/s" | "рад/с" | "rads" | "rad/sec" | "rads-1" | "rads^-1" | "rad·s⁻¹" | "rps"
-            | "radians/s" => Some(Self::RadiansPerSecond),
+            "rad/s" | "рад/с" | "rads" | "rad/sec" | "rads-1" | "rads^-1" | "rad·s⁻¹" | "radians/s" => {
+                Some(Self::RadiansPerSecond)
+            }
             "deg/s" | "°/s" | "°/с" | "dps" | "degs" | "deg/sec" | "degrees/s" => {
                 Some(Self::DegreesPerSecond)
             }
@@ -204,9 +205,9 @@ impl core::fmt::Display for AngleUnit {
 }
 
 impl MomentumUnit {
-    /// The unit of that name: N m s, kg m^2/s.
+    /// The unit of that name: N m s, J s, kg m^2/s.
     pub fn named(name: &str) -> Option<Self> {
-        matches!(product(name).as_str(), "Nms" | "kgm^2/s" | "kgm²/s" | "kgm2/s")
+        matches!(product(name).as_str(), "Nms" | "Js" | "kgm^2/s" | "kgm²/s" | "kgm2/s")
             .then_some(Self::NewtonMetreSeconds)
     }
 }

@@ -227,6 +227,9 @@ fn what_cannot_be_audited_is_refused_with_the_numbers() {
     let mut short = file.clone();
     short.rates.as_mut().unwrap().pop();
     assert!(matches!(refused(&short), AuditError::Lengths { found: 399, rows: 400, .. }));
+    let mut blank = file.clone();
+    blank.digits.rates = Some(0);
+    assert_eq!(refused(&blank), AuditError::NoDigits { column: "angular velocity" });
     let mut nowhere = file.clone();
     let Some(Attitudes::Quaternions(rows)) = &mut nowhere.attitude else { panic!() };
     rows[7] = [0.0; 4];

@@ -64,8 +64,8 @@ pub(crate) struct Advise {
     /// Time of the start, s, or with a unit, for forces that depend on time
     #[arg(long, value_name = "t0", value_parser = duration, allow_hyphen_values = true, default_value = "0", help_heading = "Demand")]
     start_time: f64,
-    /// Run the advice to T and compare with the exact motion, or with two runs of different methods that agree; exit code 1 if the
-    /// error is larger than asked for
+    /// Run the advice to T and compare its attitude with the exact motion, or with two runs of different methods that agree; exit code
+    /// 1 if the attitude error is larger than asked for. The energy error stays the predicted one
     #[arg(long, help_heading = "Output")]
     check: bool,
     /// Show every method that meets the demand, not only the quickest ten

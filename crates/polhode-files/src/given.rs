@@ -8,7 +8,8 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::inertia::{MassProperties, Twin};
 use serde::Deserialize;
 
-use crate::error::Error;
+use crate::error::{Error, warn};
+use crate::text::visible;
 
 /// A body as it was given: what its file states, and where.
 #[derive(Clone, Debug)]
@@ -113,6 +114,9 @@ struct Written {
     #[serde(default)]
     center_of_mass: [f64; 3],
     inertia: [[f64; 3]; 3],
+    /// Which no form of the output has.
+    #[serde(default)]
+    wheels: Option<Vec<serde_json::Value>>,
 }
 
 /// From the JSON that this command writes: an object, or an array of them.
@@ -128,6 +132,12 @@ pub fn from_json(path: &Path, text: &str) -> Result<Vec<Given>, Error> {
             path.display()
         ))
     })?;
+    if written.iter().any(|body| body.wheels.as_ref().is_some_and(|wheels| !wheels.is_empty())) {
+        warn(&format!(
+            "{}: the wheels of the body are left out of the output; copy the key \"wheels\" into it to keep them",
+            visible(&path.display().to_string())
+        ));
+    }
     let given = |written: Written| Given {
         name: written.name,
         mass: written.mass,

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use polhode::audit::{Attitudes, Convention, Digits, Direction, Frame, QuaternionOrder, Trajectory};
-use polhode::units::AngleUnit;
+use polhode::units::{AngleUnit, MomentumUnit, RateUnit, TimeUnit};
 
 use crate::error::{Error, Rule, TableError};
 use crate::read_as::ReadAs;
@@ -27,6 +27,8 @@ pub struct FoundTrajectory {
     pub unread: Vec<String>,
     /// Those of them that hold the attitude of a body with a name of its own, as `box2_qw`.
     pub second_attitude: Vec<String>,
+    /// What is to be known of a second column of times that contradicts the first.
+    pub contradicted_time: Option<String>,
     /// In which units times and angular velocities are: the former were brought to s, the latter are as they stand.
     pub read_as: ReadAs,
 }
@@ -35,15 +37,19 @@ pub struct FoundTrajectory {
 const NAMED: usize = 12;
 
 impl FoundTrajectory {
-    /// Which columns are not read, in words; `None` where all are.
+    /// Which columns are not read, in words, and whether one of them is a time that contradicts the one that is; `None` where all are read.
     #[must_use]
     pub fn remark(&self) -> Option<String> {
         let shown = self.unread[..self.unread.len().min(NAMED)].join(", ");
-        match self.unread.len() {
-            0 => None,
-            count if count > NAMED => Some(format!("not read: {shown} and {} more", count - NAMED)),
-            _ => Some(format!("not read: {shown}")),
-        }
+        let unread = match self.unread.len() {
+            0 => return None,
+            count if count > NAMED => format!("not read: {shown} and {} more", count - NAMED),
+            _ => format!("not read: {shown}"),
+        };
+        Some(match &self.contradicted_time {
+            Some(contradiction) => format!("{unread}; {contradiction}"),
+            None => unread,
+        })
     }
 }
 
@@ -105,9 +111,15 @@ pub fn of_text(text: &str, file: &str, reading: &ReadOptions) -> Result<FoundTra
 fn found(mut table: Table) -> Result<FoundTrajectory, TableError> {
     let claims = claims(&table)?;
     let mut rows = Bodies::default();
+    let mut second = table.header.second_time().map(SecondTime::new);
     while table.next()? {
         rows.push(&mut table)?;
+        second = match second {
+            Some(second) => second.with_row(&mut table)?,
+            None => None,
+        };
     }
+    let contradicted_time = second.and_then(|second| second.contradiction(&table));
     if rows.bodies.is_empty() {
         return Err(TableError::of(table.name(), Rule::Rows));
     }
@@ -125,9 +137,65 @@ fn found(mut table: Table) -> Result<FoundTrajectory, TableError> {
             .into_iter()
             .map(|name| visible(name).into_owned())
             .collect(),
+        contradicted_time,
         comments: table.comments,
         read_as,
     })
+}
+
+/// A column that is a time by its name too, beside the times that are read.
+struct SecondTime {
+    place: usize,
+    /// Line, time that is read, s, and number in this column.
+    rows: Vec<(u64, f64, f64)>,
+    /// Half of the last digit of both, as fine as any row has it: some programs leave out zeros at the end.
+    fine: [f64; 2],
+}
+
+/// A second time may be off by this share of the time between two rows.
+const SAME_TIME: f64 = 1e-3;
+
+impl SecondTime {
+    fn new(place: usize) -> Self {
+        SecondTime { place, rows: Vec::new(), fine: [f64::INFINITY; 2] }
+    }
+
+    /// With the present row; `None` where the column has no number.
+    fn with_row(mut self, table: &mut Table) -> Result<Option<Self>, TableError> {
+        let time = table.time()?;
+        let Ok(second) = table.number(self.place) else { return Ok(None) };
+        let first = table.header.time.map_or(0.0, |place| half_digit(table.cell(place)));
+        let first = table.time_unit.unwrap_or(TimeUnit::Seconds).seconds(first);
+        self.fine = [self.fine[0].min(first), self.fine[1].min(half_digit(table.cell(self.place)))];
+        self.rows.push((table.line(), time, second));
+        Ok(Some(self))
+    }
+
+    /// The row in which it is farthest from going with the times that are read, in words, where that is more than digits tell.
+    fn contradiction(&self, table: &Table) -> Option<String> {
+        let (&(_, from, start), &(_, to, end)) = (self.rows.first()?, self.rows.last()?);
+        let rate = (end - start) / (to - from);
+        let off = |row: &(u64, f64, f64)| (row.2 - start - rate * (row.1 - from)).abs();
+        let farthest = self.rows.iter().max_by(|a, b| off(a).total_cmp(&off(b)))?;
+        let step = (end - start).abs() / (self.rows.len() - 1).max(1) as f64;
+        let allowed = 2.0 * (rate.abs() * self.fine[0] + self.fine[1]) + SAME_TIME * step;
+        let name = visible(table.header.names[self.place].text.trim());
+        (off(farthest) > allowed).then(|| {
+            format!(
+                "column '{name}' is a time too, and does not go with the times that are read: at line {} it is off by {:.1e}",
+                farthest.0,
+                off(farthest)
+            )
+        })
+    }
+}
+
+/// Half a unit of the last digit of a number as it is written.
+fn half_digit(text: &str) -> f64 {
+    let (number, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
+    let decimals = number.split_once(['.', ',']).map_or(0, |(_, behind)| behind.len());
+    let last = exponent.parse::<i64>().unwrap_or(0) - decimals as i64;
+    format!("5e{}", last - 1).parse().unwrap_or(0.0)
 }
 
 /// What names and layout claim of the convention.
@@ -140,6 +208,12 @@ fn claims(table: &Table) -> Result<Convention, TableError> {
             Quantity::Rodrigues => claims.attitude = Some(Direction::BodyToSpace),
             Quantity::Angles => {
                 claims.angle_axes = attitude.angle_axes;
+                let unit = |k: usize| attitude.units[k].as_deref().and_then(AngleUnit::named);
+                if let Some(other) = (1..attitude.units.len()).find(|k| unit(*k) != unit(0)) {
+                    let rule = Rule::Other("its unit is not that of the first angle".into());
+                    let error = table.refused_column(attitude.places[other], rule);
+                    return Err(error.with_remedy("write the three in one unit, and name it in each"));
+                }
                 if let Some(text) = &attitude.units[0] {
                     claims.angle_unit = AngleUnit::named(text);
                     if claims.angle_unit.is_none() {
@@ -151,6 +225,7 @@ fn claims(table: &Table) -> Result<Convention, TableError> {
             _ => {}
         }
     }
+    check_units(table)?;
     claims.omega_frame = body.rates.as_ref().and_then(|rates| rates.frame);
     claims.rate_unit = table.rate_units(0)[0].filter(|_| body.rates.is_some());
     claims.momentum_frame = body.momentum.as_ref().and_then(|momentum| momentum.frame);
@@ -162,6 +237,33 @@ fn claims(table: &Table) -> Result<Convention, TableError> {
         claims.attitude = Some(Direction::BodyToSpace);
     }
     Ok(claims)
+}
+
+/// The angular velocities of all bodies are in one unit, as their numbers are taken as they stand, and momenta in none or in one that is
+/// known.
+fn check_units(table: &Table) -> Result<(), TableError> {
+    let mut first: Option<Option<RateUnit>> = None;
+    for (k, body) in table.header.bodies.iter().enumerate() {
+        if let Some(rates) = &body.rates {
+            let units = table.rate_units(k);
+            let first = *first.get_or_insert(units[0]);
+            if let Some(other) = (0..3).find(|axis| units[*axis] != first) {
+                let rule = Rule::Other("its unit is not that of the first angular velocity".into());
+                let error = table.refused_column(rates.places[other], rule);
+                return Err(error.with_remedy("write all of them in one unit"));
+            }
+        }
+        let Some(momentum) = &body.momentum else { continue };
+        for (place, unit) in momentum.places.iter().zip(&momentum.units) {
+            if let Some(unit) = unit.as_deref().filter(|unit| MomentumUnit::named(unit).is_none()) {
+                let error = table.refused_column(*place, Rule::KnownUnit("N m s, kg m^2/s")).value(unit);
+                let remedy =
+                    "convert the column; where the moments go with its unit, leave it out of the header";
+                return Err(error.with_remedy(remedy));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// The rows of one body so far.
@@ -225,11 +327,13 @@ impl Bodies {
                     Some(place) => table.refused_cell(place, Rule::Order(before, true)),
                     None => table.refused(Rule::Order(before, true)),
                 };
-                let has_id = table.header.id.is_some();
-                return Err(if has_id {
-                    error.with_remedy("sort the rows of each body by time")
-                } else {
-                    error
+                return Err(match (before == time, table.header.id.is_some()) {
+                    (true, true) => error.with_remedy("two rows of this body have one time; leave one out"),
+                    (true, false) => error.with_remedy(
+                        "two rows have one time; leave one out, or name the bodies in a column id if there are several",
+                    ),
+                    (false, true) => error.with_remedy("sort the rows of each body by time"),
+                    (false, false) => error,
                 });
             }
             body.times.push(time);

@@ -219,6 +219,18 @@ pub enum FitError {
         /// How many of the five numbers of the tensor are determined with them.
         rank: usize,
     },
+    /// A momentum or an energy is to give the size, and what was fitted changes it, or the readings that tell its mean.
+    #[error(
+        "{quantity} is to give the size of the tensor, as one that is constant and read without errors of the sensor, but {} fitted too: \
+         give the trace or the moment about an axis instead, or leave it out for the shape alone",
+        were(names)
+    )]
+    SizeVaries {
+        /// The angular momentum or the kinetic energy.
+        quantity: &'static str,
+        /// Names of the coefficients that were fitted.
+        names: Vec<&'static str>,
+    },
     /// A wheel is to be calibrated from a record that does not tell its speed.
     #[error(
         "no wheel turns in the record: record again with the wheel running; each segment must hold its speed, somewhere not zero"
@@ -414,6 +426,10 @@ pub(crate) fn with_sigma(value: f64, sigma: f64) -> String {
     let digits = if sigma > 0.0 { 1.0 - libm::floor(libm::log10(sigma)) } else { 2.0 };
     let digits = digits.clamp(0.0, 15.0) as usize;
     format!("{value:.digits$} +- {sigma:.digits$}")
+}
+
+fn were(names: &[&str]) -> String {
+    format!("{} {}", names.join(", "), if names.len() == 1 { "was" } else { "were" })
 }
 
 /// A share in per cent, to two digits.

@@ -17,7 +17,7 @@ use crate::likelihood::bend::beyond;
 use crate::likelihood::wheels::likeliest as with_wheels;
 use crate::models::equations::Equations;
 use crate::models::weighed::spread;
-use crate::physical::coordinates::Form;
+use crate::physical::coordinates::{Form, tensor};
 use crate::physical::failure::SolverFailure;
 use crate::physical::nearest::nearest;
 use crate::report::differing::differing;
@@ -29,7 +29,7 @@ use crate::report::parts::scatter;
 use crate::report::segments::{Summary, summaries};
 use crate::report::sensor::{ROTOR, suspect};
 use crate::report::systematic::errors;
-use crate::report::warnings::has_zero_inputs;
+use crate::report::warnings::{has_zero_inputs, of_record};
 use crate::settings::Settings;
 use crate::settings::sensor::SensorPriors;
 use crate::settings::torque::{TorqueModel, TorqueNoise};
@@ -171,7 +171,10 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
     let open = open_units(record, &stretches, motion.as_ref().filter(|_| settings.check_units), rms)?;
     // a quadrature over samples that are far apart is off by more than their noise
     let sparse = if open.is_none() { likeliest(record, settings) } else { None };
-    if let Some(estimate) = sparse {
+    if let Some(mut estimate) = sparse {
+        let left_out = of_record(record, &spikes, estimate.segments);
+        estimate.warnings = left_out.into_iter().chain(estimate.warnings).collect();
+        estimate.spikes = spikes;
         return Ok(Fitted { estimate, drawn: None });
     }
     if let Some(error) = hidden {
@@ -238,8 +241,6 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         let added = of_tensor * of_tensor.transpose();
         spread + Form::from_fn(|i, k| added[(i, k)])
     });
-    let complete = |segment: Summary| segment.complete(deviation * deviation, &added);
-    let per_segment = per_segment.into_iter().map(complete).collect();
     let joint = match of_parts {
         Some(more) => joint.widened(&more).ok_or_else(information)?,
         None => joint,
@@ -253,6 +254,9 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
         check_agreement(prior, agreed, &weak.x())?;
     }
     let answer = nearest(&told, &settings.limits, &dissipation)?;
+    let j = tensor(&answer.x);
+    let complete = |segment: Summary| segment.complete(&j, deviation * deviation, &added);
+    let per_segment = per_segment.into_iter().map(complete).collect();
     let facts = Facts {
         record,
         settings,

@@ -93,7 +93,7 @@ pub use report::estimate::{Estimate, Method, Residuals};
 pub use report::identifiability::{Identifiability, PrincipalAxis, Undetermined};
 pub use report::model::{ErrorFit, ModelFit};
 pub use report::motion::FittedMotion;
-pub use report::next_step::{Contradiction, NextStep};
+pub use report::next_step::{Contradiction, NextStep, Origin};
 pub use report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, Systematic, WithoutSegment};
 pub use report::parts::{Halves, Scatter};
 pub use report::torque_free::{InvariantTrend, Memory, Whiteness};

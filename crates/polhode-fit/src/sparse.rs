@@ -85,6 +85,7 @@ fn explained(record: &Record, settings: &Settings) -> Option<Estimate> {
     if !explains(&tracks, followed.levels.rate) {
         return None;
     }
+    let settings = &with_rounding(record, settings, followed.levels.rate * unit);
     let steady = steady_within_noise(&followed);
     let free = Free {
         steady,
@@ -106,7 +107,21 @@ fn explained(record: &Record, settings: &Settings) -> Option<Estimate> {
     };
     let told = Told { is_inverse: false, gain: None };
     let estimate = free.is_explained(settings).then(|| report(0, settings, &free, told).ok()).flatten();
-    estimate.filter(|estimate| !estimate.whiteness.significant())
+    let mut estimate = estimate.filter(|estimate| !estimate.whiteness.significant())?;
+    estimate.quanta = settings.quantum.map_or_else(|| record.quanta().into(), |quantum| [quantum; 3]);
+    Some(estimate)
+}
+
+/// With the rounding of readings whose step is given as part of the noise; `left` is what the motion leaves of a component, rad/s.
+fn with_rounding(record: &Record, settings: &Settings, left: f64) -> Settings {
+    let Some(quantum) = settings.quantum else { return settings.clone() };
+    let rounding = record.rounding(&Vector3::repeat(quantum));
+    let noise = match settings.noise {
+        Some(noise) => Some((noise * noise + rounding).sqrt()),
+        // what is left holds it already, where it is not less
+        None => Some(rounding.sqrt()).filter(|rounding| *rounding > left),
+    };
+    settings.clone().with_noise(noise)
 }
 
 /// Whether the motion leaves no more than a part of how the rates vary.

@@ -5,7 +5,7 @@ use crate::models::reading_error::ReadingError;
 use crate::physical::constraint::Constraint;
 use crate::physical::coordinates::{Coordinates, Form};
 use crate::report::identifiability::{Identifiability, PrincipalAxis};
-use crate::report::next_step::{Contradiction, NextStep};
+use crate::report::next_step::{Contradiction, NextStep, Origin};
 use crate::report::parts::{Halves, Scatter};
 use crate::report::torque_free::{InvariantTrend, Memory};
 use crate::report::warning::Warning;
@@ -122,10 +122,15 @@ fn next_steps_say_their_numbers() {
     let other = |turn, gain| NextStep::OtherStart { times: 30.0, turn, number: 2, gain };
     says(other(true, Some(5.0)), &["across axis 2", "30 times less well", "tell it 5 times better"]);
     says(other(false, None), &["about another axis: I2"]);
-    let left_out =
-        |is_of_sensor| NextStep::FindCause(Contradiction::LeftOut { what: "a magnet", is_of_sensor });
-    says(left_out(true), &["calibrate the sensor", "shows a magnet"]);
-    says(left_out(false), &["find out whether there is a magnet"]);
+    let left_out = |what, origin| NextStep::FindCause(Contradiction::LeftOut { what, origin });
+    says(left_out("delays", Origin::Sensor), &["calibrate the sensor", "with a prior", "shows delays"]);
+    says(left_out("offsets that change", Origin::Drift), &["drifts less", "shows offsets that change"]);
+    says(left_out("an error of hx", Origin::Wheels), &["check the inertia", "shows an error of hx"]);
+    says(left_out("a magnet", Origin::Body), &["find out whether there is a magnet"]);
+    for origin in [Origin::Drift, Origin::Wheels] {
+        let text = left_out("it", origin).to_string();
+        assert!(!text.contains("prior") && !text.contains("whether there is"), "{text}");
+    }
 }
 
 /// Products of common units are told by the fewest mistakes, and none that is near 1 is one.

@@ -365,7 +365,8 @@ impl Estimate {
         self.found.prior.map(|of| (of.chi2, of.dof))
     }
 
-    /// Power spectral density of the torque noise, (rad/s^2)^2 s, the mean of the segments by their weights.
+    /// Power spectral density of the angular acceleration that torque noise makes, the mean of its components, (rad/s^2)^2 s: the mean of the
+    /// segments by their weights.
     #[getter]
     fn rho(&self) -> f64 {
         self.found.per_segment.iter().map(|s| s.torque_noise * s.weight).sum()

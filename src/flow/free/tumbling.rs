@@ -58,7 +58,7 @@ pub enum TumblingError {
     Mode {
         /// The mode.
         mode: Mode,
-        /// Principal moments, ascending.
+        /// Principal moments in the order in which they were given; of a tensor, ascending.
         moments: [f64; 3],
     },
     /// A period, or an angle, is not usable.
@@ -218,8 +218,7 @@ impl TumblingElements {
         self.check()?;
         let moments: Vec3<Dd> = Body::free(inertia.clone()).rotor().moments();
         let Some((axis, middle)) = axes(moments, self.mode) else {
-            let ascending = moments.ascending().map(|k| inertia.principal_moments()[k]);
-            return Err(TumblingError::Mode { mode: self.mode, moments: ascending });
+            return Err(TumblingError::Mode { mode: self.mode, moments: inertia.moments_along_axes() });
         };
         let inverse = |k: usize| Dd::ONE / moments[k];
         // the momentum of size 1 that leans by `tilt` from the axis to that of the middle moment

@@ -2,6 +2,7 @@
 //! Mathematical Software 22 (1996) 469–483.
 
 use super::MeshError;
+use super::welded::check_extent;
 use crate::num::Dd;
 use crate::rotation::Vec3;
 
@@ -17,6 +18,10 @@ const CAREFUL: f64 = 1e-29;
 pub(super) fn hull(points: &[[f64; 3]]) -> Result<Vec<[u32; 3]>, MeshError> {
     if points.len() > LIMIT {
         return Err(MeshError::TooLargeForHull);
+    }
+    // points that are all one span nothing, whatever their size
+    if points.windows(2).any(|pair| pair[0] != pair[1]) {
+        check_extent(points)?;
     }
     let mut hull = Hull { points, faces: Vec::new() };
     let start = hull.simplex().ok_or(MeshError::Flat)?;

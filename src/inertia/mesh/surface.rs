@@ -107,7 +107,7 @@ impl Surface {
     /// The convex hull of points.
     ///
     /// # Errors
-    /// Coordinates that are not finite; points in one plane.
+    /// Coordinates that are not finite; points that extend over less than 1e-57 or more than 1e57; points in one plane.
     pub fn hull_of(points: &[Vector3<f64>]) -> Result<Self, MeshError> {
         if let Some(&value) = points.iter().flat_map(Vector3::iter).find(|value| !value.is_finite()) {
             return Err(MeshError::NotFinite { triangle: 1, value });
@@ -183,7 +183,7 @@ impl Surface {
     /// The convex hull of its vertices.
     ///
     /// # Errors
-    /// Vertices in one plane.
+    /// Vertices that extend over less than 1e-57 or more than 1e57; vertices in one plane.
     pub fn hull(&self) -> Result<Self, MeshError> {
         let facets = hull::hull(&self.welded.vertices)?;
         Self::new(facets.into_iter().map(|facet| self.welded.corners(facet).map(Into::into)))

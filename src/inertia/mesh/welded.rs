@@ -114,16 +114,21 @@ impl Welded {
         Vec3([0, 1, 2].map(|k| bounds.low[k] + 0.5 * (bounds.high[k] - bounds.low[k])))
     }
 
-    /// The fifth power of the longest edge of the bounding box, and the place of that, are doubles with all their digits.
+    /// As [`check_extent`] of the vertices.
     pub(super) fn check_extent(&self) -> Result<(), MeshError> {
-        let mut bounds = Bounds::default();
-        self.vertices.iter().for_each(|at| bounds.add(at));
-        let extent = (0..3).map(|k| bounds.high[k] - bounds.low[k]).fold(0.0, f64::max);
-        let reach = (0..3).map(|k| bounds.high[k].max(-bounds.low[k])).fold(0.0, f64::max);
-        if EXTENTS.contains(&extent) && LENGTHS.contains(&reach) {
-            Ok(())
-        } else {
-            Err(MeshError::OutOfRange { extent: extent.min(f64::MAX), reach })
-        }
+        check_extent(&self.vertices)
+    }
+}
+
+/// The fifth power of the longest edge of the bounding box, and the place of that, are doubles with all their digits.
+pub(super) fn check_extent(points: &[[f64; 3]]) -> Result<(), MeshError> {
+    let mut bounds = Bounds::default();
+    points.iter().for_each(|at| bounds.add(at));
+    let extent = (0..3).map(|k| bounds.high[k] - bounds.low[k]).fold(0.0, f64::max);
+    let reach = (0..3).map(|k| bounds.high[k].max(-bounds.low[k])).fold(0.0, f64::max);
+    if EXTENTS.contains(&extent) && LENGTHS.contains(&reach) {
+        Ok(())
+    } else {
+        Err(MeshError::OutOfRange { extent: extent.min(f64::MAX), reach })
     }
 }

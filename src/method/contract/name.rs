@@ -37,7 +37,13 @@ use crate::num::Dd;
 /// ```
 pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
     if let Some(base) = name.strip_suffix(TAKEN_BACK) {
-        return Ok(Box::new(PhaseCorrected::new(&*method(base)?)?));
+        // one call deeper, however often the suffix is written
+        let bare = base.trim_end_matches(TAKEN_BACK);
+        let corrected = PhaseCorrected::new(&*method(bare)?)?;
+        if bare.len() < base.len() {
+            return Err(PhaseError::TakenBack { method: format!("{bare}{TAKEN_BACK}") }.into());
+        }
+        return Ok(Box::new(corrected));
     }
     let (head, scheme) = split(name, '@');
     let (base, argument) = split(head, ':');

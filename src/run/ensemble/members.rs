@@ -109,3 +109,14 @@ impl Start {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn members_take_the_room_that_is_stated() {
+        let room = [size_of::<Start>(), size_of::<[f64; 3]>(), size_of::<Inertia>()];
+        assert_eq!(room, [64, 24, 192]);
+    }
+}

@@ -57,8 +57,9 @@ impl Observed {
 
 /// Bodies with their starts, propagated together.
 ///
-/// A member takes 57 bytes, and 24 more where moments differ from member to member; 264 where tensors do that are not
-/// along the body axes. While it runs, each thread holds one part of at most 8192 members and 80 bytes for each of its rows.
+/// A member takes 64 bytes, 24 more where moments differ from member to member, and 192 more where tensors do that are not
+/// along the body axes. While it runs, parts of at most 8192 members are held, one for a single thread and some two for each of several,
+/// with 80 bytes for each of their rows, and more where errors are observed.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};

@@ -167,7 +167,9 @@ impl Rows {
         self
     }
 
+    /// Where the rows of a time are; of one that there is not, behind all.
     fn place(&self, time: usize) -> core::ops::Range<usize> {
+        let time = time.min(self.times);
         time * self.members..(time + 1) * self.members
     }
 }

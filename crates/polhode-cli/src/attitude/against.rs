@@ -10,6 +10,8 @@ use polhode_files::error::{Error, tell, warn};
 use polhode_files::text::{rounded, visible};
 use polhode_files::trajectory::read;
 
+use crate::flags::attitude::check_matrices;
+
 /// Times agree within this share of the mean interval of the reference.
 const SAME_TIME: f64 = 1e-6;
 
@@ -32,6 +34,10 @@ impl Reference {
     pub(super) fn read(path: &Path) -> Result<Self, Error> {
         let found = read(path, &ReadOptions::default())?;
         let name = visible(&path.display().to_string()).into_owned();
+        if found.counts_steps {
+            let rule = "counts steps of a length that it does not tell";
+            return Err(Error::input("--against", &name, rule, "write its times in s"));
+        }
         let mut bodies = found.bodies;
         let rows = match (bodies.len(), bodies.pop()) {
             (1, Some((_, rows))) if rows.attitude.is_some() => rows,
@@ -54,6 +60,9 @@ impl Reference {
                 rule,
                 "write its attitudes in columns q_w, q_x, q_y, q_z",
             ));
+        }
+        if let Some(Attitudes::Matrices(matrices)) = &rows.attitude {
+            check_matrices(matrices, &rows.times, &name)?;
         }
         let mut reading = Reading::default();
         reading.quaternion = found.claims.quaternion;

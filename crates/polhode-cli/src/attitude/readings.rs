@@ -62,6 +62,8 @@ pub(super) struct Readings {
 struct Found {
     samples: usize,
     merged: usize,
+    /// s.
+    first_merged: Option<f64>,
     repeated: usize,
     saturated: usize,
     new_readings_rate: Option<f64>,
@@ -184,8 +186,17 @@ impl Readings {
 
     /// What was left out or changed.
     fn tell(&self) {
-        let Found { samples, merged, repeated, saturated, new_readings_rate, spikes, in_bursts, .. } =
-            self.found;
+        let Found {
+            samples,
+            merged,
+            first_merged,
+            repeated,
+            saturated,
+            new_readings_rate,
+            spikes,
+            in_bursts,
+            ..
+        } = self.found;
         tell_skipped(self.parts.skipped(), samples);
         if self.is_unit_open {
             let (read, other) = match self.kind {
@@ -201,7 +212,8 @@ impl Readings {
             );
         }
         if merged > 0 {
-            warn(&format!("{merged} rows have the time of the row before: their rates are averaged"));
+            let first = first_merged.map_or(String::new(), |t| format!(", the first at {} s", short(t)));
+            warn(&format!("{merged} rows have the time of the row before{first}: their rates are averaged"));
         }
         if repeated > 0 {
             let rate = new_readings_rate.map_or(String::new(), |hz| format!(", {hz:.4} new ones a second"));
@@ -250,6 +262,7 @@ impl Found {
         let record = &part.record;
         self.samples += record.samples();
         self.merged += record.merged();
+        self.first_merged = self.first_merged.or(record.first_merged());
         self.repeated += record.repeated() + record.stale();
         self.saturated += record.saturated();
         self.new_readings_rate = self.new_readings_rate.or(record.new_readings_rate());

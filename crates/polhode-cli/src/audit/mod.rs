@@ -7,12 +7,12 @@ mod golden;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use polhode::audit::{Attitudes, Noise, Question, Trajectory, audit, step_length};
+use polhode::audit::{Attitudes, Judgement, Noise, Question, Reading, Trajectory, audit, step_length};
 use polhode::body::Body;
 use polhode_files::error::{Error, warn};
 use polhode_files::numbers::{list, positive};
 use polhode_files::text::{short, visible};
-use polhode_files::trajectory;
+use polhode_files::{NamedBy, trajectory};
 use polhode_pages::document::Form;
 use polhode_pages::output::Output;
 use polhode_pages::table::Format;
@@ -188,6 +188,7 @@ impl Audit {
             return Err(Error::input(name, "", &rule, "name those of one body by --columns"));
         }
         let mut remark = found.remark();
+        let unit_is_open = !found.counts_steps && found.read_as.times.1 == NamedBy::Nothing;
         let claims = self.reading.claims(found.claims);
         let bodies: Vec<(Option<String>, Trajectory)> = match &self.id {
             None => {
@@ -225,6 +226,9 @@ impl Audit {
             question.wheels.clone_from(&wheels);
             let verdict =
                 audit(&record, &question).map_err(|error| Error::Input(format!("{place}: {error}")))?;
+            if verdict.judgement != Judgement::Right && unit_is_open {
+                notes.extend(clock(&record, &verdict.reading));
+            }
             let against =
                 golden.as_ref().map(|golden| golden.difference(&place, &record, &verdict, self.tolerance));
             let against = against.transpose()?;
@@ -273,6 +277,18 @@ fn noise(text: &str) -> Result<Noise, String> {
         return Err(format!("RATE is {rates:?} rad/s; give 0 or more"));
     }
     Ok(Noise { attitude, rates })
+}
+
+/// In which unit of time the attitudes turn as the angular velocities say, where that is not s.
+fn clock(record: &Trajectory, reading: &Reading) -> Option<String> {
+    record.rates.as_ref()?;
+    let rate = reading.rate_unit.unwrap_or_default().radians_per_second(1.0);
+    let unit = step_length(record, None)? / rate;
+    let known = [(1e-3, "ms"), (1e-6, "us"), (1e-9, "ns")];
+    let (_, name) = known.into_iter().find(|(seconds, _)| (unit / seconds - 1.0).abs() < 0.1)?;
+    Some(format!(
+        "the attitudes turn as the angular velocities say if the times, which name no unit, are in {name}: --time-unit {name}"
+    ))
 }
 
 /// Turns counts of steps into times, and says how.

@@ -42,6 +42,12 @@ impl Compare {
                 let rule = "is what the others are compared with";
                 return Err(Error::input("--methods", name, rule, "leave it out; exact-step takes steps"));
             }
+            if name.starts_with("dissipating:") {
+                let rule =
+                    "moves a body with inner friction, and the true motion here is that of a rigid body";
+                let remedy = "leave it out; `polhode propagate --method` takes it";
+                return Err(Error::input("--methods", name, rule, remedy));
+            }
             let method = named("--methods", name)?;
             if method.tolerance().is_none() {
                 let Some(Positives(steps)) = &self.steps else {

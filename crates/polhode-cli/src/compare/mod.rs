@@ -163,8 +163,17 @@ impl Compare {
                 }
             }
         }
+        let end = self.start_time + known.min(span);
         for trajectory in &trajectories {
             table.push(self.foreign(&truth, trajectory)?);
+            if let Some(last) = trajectory.rows.last().map(|row| row.t).filter(|t| *t < end - 1e-9 * span) {
+                warn(&format!(
+                    "{}: its last row is at t = {} s: its errors are of that time, and those of the methods of t = {} s",
+                    trajectory.name,
+                    short(last),
+                    short(end)
+                ));
+            }
         }
         for series in &mut figure.series {
             series.points.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -14,7 +14,9 @@ use polhode::truth::{Ending, LOST, Truth};
 use polhode::units::RateUnit;
 use polhode_files::error::{Error, unexpected};
 use polhode_files::text::{short, visible};
-use polhode_files::{ReadOptions, trajectory};
+use polhode_files::{ColumnNames, ReadOptions, trajectory};
+
+use crate::flags::attitude::check_matrices;
 
 /// Rows of a file.
 pub(crate) struct Trajectory {
@@ -64,6 +66,13 @@ impl Trajectory {
                 "give the length of a step, s, as --time-unit",
             );
         }
+        if !found.second_attitude.is_empty() && table.columns == ColumnNames::default() {
+            let rule = format!(
+                "the columns {} hold another attitude, which is not read",
+                found.second_attitude.join(", ")
+            );
+            return refused(&rule, "name those of one body by --columns");
+        }
         let mut bodies = found.bodies;
         let columns = match (bodies.len(), bodies.pop()) {
             (1, Some((_, columns))) => columns,
@@ -74,8 +83,12 @@ impl Trajectory {
         if columns.attitude.is_none() {
             return refused("has no attitude", "add the columns q_w, q_x, q_y, q_z");
         }
+        if let Some(Attitudes::Matrices(matrices)) = &columns.attitude {
+            check_matrices(matrices, &columns.times, &name)?;
+        }
         let mut claims = found.claims;
-        claims.quaternion = order.or(claims.quaternion);
+        // columns that are named w, x, y and z are read by their names
+        claims.quaternion = claims.quaternion.or(order);
         let Some((reading, is_of_another_body)) = reading(&columns, claims, body) else {
             return match &columns.attitude {
                 Some(Attitudes::Quaternions(_)) => refused(

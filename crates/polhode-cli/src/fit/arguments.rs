@@ -54,7 +54,8 @@ pub(super) struct SensorArguments {
     /// Standard deviation of the errors of the right angles between axes, rad: estimated with this prior
     #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
     gyro_misalignment: Option<f64>,
-    /// Standard deviation of the delays of y and z behind x, s: estimated with this prior
+    /// Standard deviation of the delays of the readings of y and z against x, s: estimated with this prior, positive where a reading shows
+    /// the motion of an earlier time
     #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
     gyro_skew: Option<f64>,
     /// Step of the digital readings, rad/s: its rounding is noise of variance Q^2/12 [default: found in the readings]

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 use polhode::audit::{Attitudes, Convention, Direction, Frame, Reading, Trajectory};
 use polhode_files::ReadAs;
 use polhode_files::error::{Error, tell, warn};
@@ -13,7 +13,7 @@ use polhode_files::trajectory::{self, FoundTrajectory};
 use polhode_fit::Poses;
 
 use super::frames::{Left, about_space};
-use crate::flags::attitude::AttitudeArguments;
+use crate::flags::attitude::{AttitudeArguments, check_matrices};
 use crate::flags::record::RecordArguments;
 
 /// What of a file is fitted.
@@ -139,8 +139,18 @@ impl PoseArguments {
     /// The attitudes of all files and windows.
     pub(super) fn read(&self, data: &[PathBuf], reading: &RecordArguments) -> Result<Read, Error> {
         reading.check_windows(data.len())?;
-        if self.from == Some(From::Both) {
-            reading.tell_axes();
+        match (self.from, reading.axes()) {
+            (Some(From::Both), _) => reading.tell_axes(),
+            (_, Some(axes)) => {
+                let rule = "says which columns are the rates, and attitudes are fitted";
+                return Err(Error::input(
+                    "--axes",
+                    &axes.to_string(),
+                    rule,
+                    "leave it out, or fit the rates",
+                ));
+            }
+            _ => {}
         }
         let mut all: Option<Read> = None;
         for (k, path) in data.iter().enumerate() {
@@ -260,30 +270,6 @@ fn convention(rows: &Trajectory, claims: &Convention, name: &str) -> Result<Read
         _ => {}
     }
     Ok(reading)
-}
-
-/// How far a rotation matrix may be from one.
-const ORTHOGONAL: f64 = 0.1;
-
-/// Refuses matrices that mirror, or are no rotations.
-fn check_matrices(matrices: &[[f64; 9]], times: &[f64], name: &str) -> Result<(), Error> {
-    for (m, t) in matrices.iter().zip(times) {
-        let m = Matrix3::from_row_slice(m);
-        let determinant = m.determinant();
-        let rule = if determinant < 0.0 {
-            format!(
-                "the matrix at {t} s has the determinant {determinant:.4}: it mirrors, one of its frames is left-handed"
-            )
-        } else {
-            let off = ((m.transpose() * m) / (m.norm_squared() / 3.0) - Matrix3::identity()).amax();
-            if off <= ORTHOGONAL {
-                continue;
-            }
-            format!("the matrix at {t} s is no rotation: M^T M differs from a multiple of 1 by {off:.2e}")
-        };
-        return Err(Error::input(name, "", &rule, "write rotation matrices with the determinant 1"));
-    }
-    Ok(())
 }
 
 /// The angular velocities beside the attitudes, rad/s, in body axes of their own.

@@ -21,7 +21,7 @@ use nalgebra::Vector3;
 use polhode_files::error::{Error, warn};
 use polhode_files::inputs as opened;
 use polhode_files::numbers::{numbers, positive};
-use polhode_fit::{Limit, Settings, fit, fit_poses};
+use polhode_fit::{Limit, Method, Settings, TorqueModel, fit, fit_poses};
 use polhode_pages::document::Form;
 use polhode_pages::output::Output;
 use polhode_pages::table::Format;
@@ -144,6 +144,11 @@ impl Fit {
         let read = match &chosen {
             Chosen::Attitudes { .. } => Some(self.attitudes()?),
             Chosen::Rates { beside } => {
+                if let Some(noise) = self.poses.noise() {
+                    let rule = "is the noise of attitudes, and the rates are fitted";
+                    let remedy = "leave it out, or fit the attitudes: --from attitudes";
+                    return Err(Error::input("--attitude-noise", &noise.to_string(), rule, remedy));
+                }
                 self.poses.check_frames(beside, &self.reading)?;
                 None
             }
@@ -197,7 +202,13 @@ impl Fit {
                     )?)?;
                 }
                 if let Some(facts) = facts {
-                    output.write_whole(&facts.report(&record, &spans, (&as_read, &reason), format))?;
+                    let method = self.method(read.is_some());
+                    output.write_whole(&facts.report(
+                        &record,
+                        &spans,
+                        (&as_read, &reason, method),
+                        format,
+                    ))?;
                 }
                 let message = format!("{}: {reason}", self.names());
                 return Err(if failed { Error::Failed(message) } else { Error::Input(message) });
@@ -252,6 +263,15 @@ impl Fit {
         Ok(())
     }
 
+    /// By which method a record without an answer was fitted.
+    fn method(&self, has_attitudes: bool) -> Method {
+        match (has_attitudes, TorqueModel::from(self.torque)) {
+            (false, _) => Method::WeakForm,
+            (true, TorqueModel::Drag3 | TorqueModel::Quadratic) => Method::Smoother,
+            (true, _) => Method::ExactMotion,
+        }
+    }
+
     fn settings(&self) -> Result<Settings, Error> {
         let limit = |axis: &[f64; 4]| Limit {
             axis: Vector3::new(axis[0], axis[1], axis[2]),
@@ -289,7 +309,15 @@ impl Fit {
 
     /// The inertia of a wheel is found from a body that is known, or from a joint fit.
     fn check_wheel(&self) -> Result<(), Error> {
-        if self.wheel.calibrated().is_none() || self.carrier.is_given() || self.known.body()?.is_some() {
+        if self.wheel.calibrated().is_none() || self.carrier.is_given() {
+            return Ok(());
+        }
+        if self.report.is_some() || self.residuals.is_some() || self.figure.is_some() {
+            let rule = "the moment of a wheel alone has no page, no residuals and no figure";
+            let remedy = "leave out --report, --residuals and --figure, or give --carrier";
+            return Err(Error::input("--calibrate-wheel", "", rule, remedy));
+        }
+        if self.known.body()?.is_some() {
             return Ok(());
         }
         let rule = "the inertia of a wheel is found from a body that is known, or from a joint fit";

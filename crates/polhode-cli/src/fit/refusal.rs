@@ -31,6 +31,9 @@ pub(super) fn facts(error: &FitError) -> (Option<Facts>, bool) {
         FitError::Driven { .. } => (Some(Facts::driven()), true),
         FitError::Poses(PoseFault::Direction { .. }) => (Some(Facts::direction_open()), true),
         FitError::Poses(PoseFault::NotFree { .. }) => (Some(Facts::driven()), true),
+        FitError::Poses(PoseFault::Unsettled) => (Some(Facts::several()), true),
+        FitError::Untold { names, rank } => (Some(Facts::untold(names, *rank)), true),
+        FitError::UntoldSensor => (Some(Facts::untold_sensor()), true),
         FitError::Contradicted { .. }
         | FitError::Exchanged { .. }
         | FitError::Told(_)
@@ -39,5 +42,27 @@ pub(super) fn facts(error: &FitError) -> (Option<Facts>, bool) {
         | FitError::Solver(_)
         | FitError::Poses(PoseFault::NoTurn { .. } | PoseFault::HalfTurn { .. }) => (None, true),
         _ => (None, false),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Whatever leaves the tensor open, the fit has failed, and says what is open and which record would tell more.
+    #[test]
+    fn records_that_do_not_determine_the_tensor_have_facts() {
+        let untold = |rank| FitError::Untold { names: vec!["drag_xx", "drag_zz"], rank };
+        for (error, rank, open) in [
+            (untold(3), Some(3), "drag_xx, drag_zz"),
+            (untold(5), None, "drag_xx, drag_zz"),
+            (FitError::UntoldSensor, None, "errors of the sensor"),
+            (FitError::Poses(PoseFault::Unsettled), None, "ratios of the moments"),
+        ] {
+            let (told, failed) = facts(&error);
+            let told = told.unwrap();
+            assert!(failed && told.rank == rank && told.open[0].contains(open), "{error}: {told:?}");
+            assert!(told.next.contains("longer"), "{error}: {told:?}");
+        }
     }
 }

@@ -1,6 +1,7 @@
-//! In which convention attitudes are written: `audit` and `fit`.
+//! In which convention attitudes are written: `audit` and `fit`; and what every command asks of rotation matrices.
 
 use clap::{Args, ValueEnum};
+use nalgebra::Matrix3;
 use polhode::audit::{Angles, Attitudes, Convention, Direction, Turns};
 use polhode::rotation::EulerSequence;
 use polhode::units::AngleUnit;
@@ -12,7 +13,7 @@ use super::table::Order;
 /// What is stated of the attitudes.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct AttitudeArguments {
-    /// State the place of the scalar
+    /// State the place of the scalar, where the names of the columns leave it open
     #[arg(long, value_enum, help_heading = "Reading")]
     quaternion: Option<Order>,
     /// State the direction of the attitude [default: found from the rows]
@@ -59,9 +60,42 @@ fn sequence(text: &str) -> Result<(EulerSequence, Turns), String> {
         .map_err(|error: polhode::rotation::EulerSequenceError| error.to_string())
 }
 
+/// How far a rotation matrix may be from one.
+const ORTHOGONAL: f64 = 0.1;
+
+/// Refuses matrices that mirror, or are no rotations.
+pub(crate) fn check_matrices(matrices: &[[f64; 9]], times: &[f64], name: &str) -> Result<(), Error> {
+    for (m, t) in matrices.iter().zip(times) {
+        let m = Matrix3::from_row_slice(m);
+        let determinant = m.determinant();
+        let rule = if determinant < 0.0 {
+            format!(
+                "the matrix at {t} s has the determinant {determinant:.4}: it mirrors, one of its frames is left-handed"
+            )
+        } else {
+            let off = ((m.transpose() * m) / (m.norm_squared() / 3.0) - Matrix3::identity()).amax();
+            if off <= ORTHOGONAL {
+                continue;
+            }
+            format!("the matrix at {t} s is no rotation: M^T M differs from a multiple of 1 by {off:.2e}")
+        };
+        return Err(Error::input(name, "", &rule, "write rotation matrices with the determinant 1"));
+    }
+    Ok(())
+}
+
 impl AttitudeArguments {
     /// Angles in columns of the names roll, pitch and yaw, in the order of the sequence that is stated.
+    ///
+    /// # Errors
+    /// A unit of angles beside another one in the header, a sequence that turns about one axis twice.
     pub(crate) fn order(&self, found: &mut FoundTrajectory) -> Result<(), Error> {
+        if let (Some(named), Some(stated)) = (found.claims.angle_unit, self.angle_unit)
+            && named != stated
+        {
+            let rule = format!("the header says {named}");
+            return Err(Error::input("--angle-unit", &stated.to_string(), &rule, "drop one of the two"));
+        }
         let (Some(_), Some((sequence, _))) = (found.claims.angle_axes, self.euler) else { return Ok(()) };
         let axes = sequence.axes();
         if axes[0] == axes[2] {
@@ -85,9 +119,8 @@ impl AttitudeArguments {
     /// What is claimed: by flags first, then by the names of the file.
     pub(crate) fn claims(&self, of_file: Convention) -> Convention {
         let mut claims = of_file;
-        if let Some(order) = self.quaternion {
-            claims.quaternion = Some(order.into());
-        }
+        // columns that are named w, x, y and z are read by their names, in whatever order they stand
+        claims.quaternion = claims.quaternion.or(self.quaternion.map(Into::into));
         if let Some(to) = self.attitude {
             let direct = match to {
                 To::BodyToSpace => Direction::BodyToSpace,

@@ -207,7 +207,12 @@ impl Inertia {
     }
 
     fn form(&self) -> Result<Form, Error> {
-        Form::of(self.format, self.out.as_deref())
+        let form = Form::of(self.format, self.out.as_deref())?;
+        if self.about.is_some() && !form.is_report() {
+            let rule = "this format states the tensor about the centre of mass alone";
+            return Err(Error::input("--about", "", rule, "leave it out, or write a table, csv or json"));
+        }
+        Ok(form)
     }
 
     fn check_about(&self, bodies: &[Examined]) -> Result<(), Error> {
@@ -348,7 +353,7 @@ impl Inertia {
                 return Err(Error::input("--mass", "", rule, "give --mass M"));
             };
             given = match MassProperties::from_tensor_about(point.into(), mass, center_of_mass, tensor) {
-                Ok(body) => Given { extents: self.extents, ..Given::body(body) },
+                Ok(body) => Given { extents: self.extents, computed: false, ..Given::body(body) },
                 Err(MassError::Inertia(law @ InertiaError::NotSymmetric { .. })) => {
                     return Err(Error::Input(format!("{place}: {law}")));
                 }

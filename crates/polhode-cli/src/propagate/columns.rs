@@ -132,6 +132,9 @@ impl Columns {
             }
             // angles that are asked for by name need no sequence
             named.retain(|place| field == "euler" || matches!(ALL[*place].0, Angle(_)) || has(ALL[*place].0));
+            if named.is_empty() {
+                return Err(no_such(field));
+            }
             if named.iter().any(|place| places.contains(place)) {
                 return Err(Error::input("--fields", field, "names a column twice", "name each once"));
             }
@@ -143,12 +146,7 @@ impl Columns {
             places = (0..ALL.len()).filter(shown).collect();
         }
         if places.is_empty() {
-            return Err(Error::input(
-                "--fields",
-                &fields.join(","),
-                "the motion has no such quantity",
-                "name others; jd needs --epoch, observer needs --observer",
-            ));
+            return Err(no_such(&fields.join(",")));
         }
         Ok(Self { places, asked })
     }
@@ -226,6 +224,12 @@ impl Columns {
             JulianDate => self.asked.epoch.map(|epoch| epoch.later(reading.at.seconds()).julian()).into(),
         })
     }
+}
+
+/// Fields that this motion does not have.
+fn no_such(fields: &str) -> Error {
+    let remedy = "name others; jd needs --epoch, observer needs --observer";
+    Error::input("--fields", fields, "the motion has no such quantity", remedy)
 }
 
 /// Whether Jacobi's constant is what the motion conserves in place of the energy.

@@ -67,7 +67,7 @@ pub(crate) struct Propagate {
     stop: bool,
     /// The exact motion between the attitudes of a file (t, q_w, q_x, q_y, q_z; body to space), in rows of --every from the first to the last, with the error of spherical linear interpolation
     #[arg(long, value_name = "POSES", requires = "every", help_heading = "Through attitudes",
-          conflicts_with_all = ["omega", "momentum_body", "momentum_space", "attitude", "angles", "rotation", "times", "until", "start_time", "events", "method", "step", "tolerance"])]
+          conflicts_with_all = ["omega", "momentum_body", "momentum_space", "attitude", "angles", "rotation", "frame", "to_frame", "periods", "times", "times_column", "until", "start_time", "events", "method", "step", "tolerance"])]
     through: Option<PathBuf>,
     /// Most turns between two attitudes, by the mean spin 2E/|L| [default: 1]
     #[arg(long, value_name = "N", value_parser = positive, allow_hyphen_values = true, requires = "through", help_heading = "Through attitudes")]

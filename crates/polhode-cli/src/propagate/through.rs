@@ -87,6 +87,9 @@ fn read(file: &Path) -> Result<Vec<(f64, UnitQuaternion<f64>)>, Error> {
     let name = visible(&file.display().to_string()).into_owned();
     let refused = |rule: &str, remedy: &str| Err(Error::input("--through", &name, rule, remedy));
     let found = trajectory::read(file, &ReadOptions::default())?;
+    if found.counts_steps {
+        return refused("counts steps of a length that it does not tell", "write the times in s");
+    }
     let mut bodies = found.bodies;
     let (1, Some((_, rows))) = (bodies.len(), bodies.pop()) else {
         return refused("has several bodies", "name a file of one body");

@@ -90,7 +90,8 @@ pub(super) struct GyroscopeArguments {
     /// Step of the digital output, rad/s
     #[arg(long, value_name = "Q", value_parser = not_negative, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
     quantum: f64,
-    /// Delay of the reading of each axis after the time of the row, s
+    /// How much later than the time of its row each axis is read, s: a delay of the reading behind the motion, which `fit` estimates, has the
+    /// other sign
     #[arg(long, value_name = "sx,sy,sz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     skew: Option<[f64; 3]>,
     /// Fraction of the samples with a spike on one component, and its size, rad/s

@@ -16,6 +16,7 @@ use polhode_fit::{Gyroscope, SimulatedPoses, simulate_poses};
 use polhode_pages::table::{Cell, Column, Format, RowWriter, Table};
 
 use crate::flags::body::BodyArguments;
+use crate::flags::start::{Factor, rate_unit};
 use crate::flags::times::{Regular, regular};
 use crate::flags::wheel::{WheelArguments, refused};
 use arguments::{DisturbanceArguments, GyroscopeArguments};
@@ -41,9 +42,12 @@ pub(crate) struct Simulate {
     body: BodyArguments,
     #[command(flatten)]
     wheels: WheelArguments,
-    /// Angular velocity at the start, body axes, rad/s [default: that of the catalogue's body]
+    /// Angular velocity at the start, body axes, rad/s or --rate-unit [default: that of the catalogue's body]
     #[arg(long, value_name = "wx,wy,wz", value_parser = numbers::<3>, allow_hyphen_values = true, help_heading = "Start")]
     omega: Option<[f64; 3]>,
+    /// Unit of --omega alone: rad/s, deg/s, rpm, or another of rad, deg, rev per s, min, h, d, as in deg/d [default: rad/s]
+    #[arg(long, value_name = "UNIT", value_parser = rate_unit, requires = "omega", help_heading = "Start")]
+    rate_unit: Option<Factor>,
     /// Duration: s, or with a unit (ms, min, h, d)
     #[arg(long, value_name = "T", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Record")]
     until: f64,
@@ -96,7 +100,8 @@ impl Simulate {
         let (body, of_file) = self.body.free()?;
         let wheels = self.wheels.all(of_file);
         let published = self.body.published_start().map(|start| start.omega);
-        let Some(start) = self.omega.or(published) else {
+        let unit = self.rate_unit.map_or(1.0, |Factor(unit)| unit);
+        let Some(start) = self.omega.map(|omega| omega.map(|w| w * unit)).or(published) else {
             return Err(Error::Input(
                 "--omega: missing; give --omega wx,wy,wz; bodies of the catalogue have one".into(),
             ));

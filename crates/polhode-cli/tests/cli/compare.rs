@@ -170,7 +170,7 @@ fn a_trajectory_of_another_program_is_a_row() {
     );
     refused(
         &flags(&bad("b.csv", "t,w,x,y,z\n1,1,0,0,0\n1,1,0,0,0\n")),
-        &["b.csv, line 3, column 1 (t): '1'", "sort the rows"],
+        &["b.csv, line 3, column 1 (t): '1'", "two rows have one time"],
     );
     refused(&flags(&bad("c.csv", "t,w,x,y,z\n21,1,0,0,0\n")), &["c.csv: '21'", "t from 0 to 20"]);
     refused(

@@ -227,6 +227,11 @@ fn torques_on_attitudes_are_found_or_refused() {
     let hand = format!("t,qw,qx,qy,qz\n{}", hand.collect::<String>());
     let hand = scratch.file("hand.csv", hand);
     refused(1, &format!("fit {hand}"), &["does not determine the tensor", "3 of 5"]);
+    let by_exact_motion = json(&format!("fit {hand}"));
+    assert_eq!(by_exact_motion["method"], "maximum likelihood on the exact motion of the free body");
+    assert_eq!(by_exact_motion["rank"], 3);
+    let by_smoother = json(&format!("fit {hand} --torque drag3"));
+    assert!(by_smoother["method"].as_str().unwrap().contains("filter and smoother"), "{by_smoother}");
     let fast = "simulate --moments 1,2,2.6 --omega 3,10,4 --until 20 --every 0.3 --attitude-noise 0.01";
     let fast = scratch.file("fast.csv", output(fast));
     refused(1, &format!("fit {fast}"), &["beyond pi = 3.14", "rad/s"]);

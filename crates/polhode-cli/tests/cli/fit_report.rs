@@ -116,7 +116,7 @@ fn every_number_has_a_unit_and_each_segment_the_answer_without_it() {
         assert!(text.contains("torque weight I1/I3 I2/I3 shift 1 101 "), "{text}");
         for part in [
             noise,
-            "of the torque noise, (rad/s^2)^2 s",
+            "angular acceleration by torque noise, (rad/s^2)^2 s",
             "in standard deviations",
             "I1 + I2 - I3: ",
             "of the trace",

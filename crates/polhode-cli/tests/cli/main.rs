@@ -24,6 +24,7 @@ mod flights;
 mod forces;
 mod general;
 mod harness;
+mod heard;
 mod hostile;
 mod inertia;
 #[cfg(unix)]

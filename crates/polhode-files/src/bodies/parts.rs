@@ -8,10 +8,11 @@ use polhode::inertia::{Amount, MassError, MassProperties, Solid};
 use toml::Spanned;
 use toml::de::DeValue;
 
-use crate::error::Error;
+use crate::error::{Error, warn};
 use crate::look::{Look, Piece};
 use crate::mesh::{MeshOptions, length_unit, surface};
 use crate::numbers::turn;
+use crate::text::visible;
 use crate::toml_file::{Section, TomlFile};
 use crate::wheel;
 
@@ -33,7 +34,14 @@ pub(super) struct Parts {
 /// # Errors
 /// A file that cannot be read; a key that is unknown, missing, or has a value that cannot be used, with its line.
 pub fn parts(path: &Path) -> Result<MassProperties, Error> {
-    read(path).map(|parts| parts.body)
+    let Parts { body, wheels, .. } = read(path)?;
+    if !wheels.is_empty() {
+        warn(&format!(
+            "{}: the [[wheels]] are left out here; --body of the commands that move a body takes them",
+            visible(&path.display().to_string())
+        ));
+    }
+    Ok(body)
 }
 
 /// The same with what the parts look like, and the `[[wheels]]`.

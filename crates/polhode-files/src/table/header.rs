@@ -147,6 +147,17 @@ impl Header {
         places.into_iter().filter_map(|place| self.others().nth(place)).map(|name| name.text.trim()).collect()
     }
 
+    /// A column that is a time by its name too, and no counter, beside the one that is read.
+    pub(crate) fn second_time(&self) -> Option<usize> {
+        self.time?;
+        let read: Vec<usize> =
+            self.columns().into_iter().chain(self.time).chain(self.nanoseconds).chain(self.id).collect();
+        let is_time = |name: &Name| name.time_rank().is_some() && !name.is_counter();
+        let mut others =
+            (0..).zip(&self.names).filter(|(place, _)| !self.is_generalized && !read.contains(place));
+        others.find(|(_, name)| is_time(name)).map(|(place, _)| place)
+    }
+
     /// The names that are not read.
     fn others(&self) -> impl Iterator<Item = &Name> {
         let read: Vec<usize> =

@@ -320,12 +320,25 @@ impl<'t> Table<'t> {
                 RateUnit::named(self.cell(*place)).map(|_| Some(self.cell(*place).to_string()))
             };
             let body = self.header.bodies.first();
-            let rates = body
+            let rates: Option<Option<Vec<Option<String>>>> = body
                 .and_then(|body| body.rates.as_ref())
                 .map(|rates| rates.places.iter().map(named).collect());
+            let angle = |place: &usize| {
+                AngleUnit::named(self.cell(*place)).map(|_| Some(self.cell(*place).to_string()))
+            };
+            let angles: Option<Vec<Option<String>>> = body
+                .and_then(|body| body.attitude.as_ref())
+                .filter(|attitude| attitude.quantity == Quantity::Angles)
+                .and_then(|attitude| attitude.places.iter().map(angle).collect());
             let is_note =
                 self.header.columns().iter().all(|place| self.cell(*place).eq_ignore_ascii_case("cal"));
             let is_text = !self.header.columns().iter().any(|place| cells::is_number(self.cell(*place)));
+            let are_units = time.is_some() && (matches!(rates, Some(Some(_))) || rates.is_none() && is_text);
+            if let (true, Some(units)) = (are_units, angles)
+                && let Some(attitude) = self.header.bodies.first_mut().and_then(|body| body.attitude.as_mut())
+            {
+                attitude.units = units;
+            }
             match (time, rates) {
                 (Some(time), Some(Some(units))) => {
                     if let Some(rates) = self.header.bodies.first_mut().and_then(|body| body.rates.as_mut()) {

@@ -1,4 +1,4 @@
-//! The delay of an axis of the sensor behind the first.
+//! The delay of the readings of an axis of the sensor against the first: they show the motion of an earlier time.
 
 use nalgebra::Vector3;
 

@@ -14,6 +14,7 @@ use crate::poses::record::Poses;
 use crate::report::estimate::Estimate;
 use crate::report::exact::{Told, report};
 use crate::report::smoothed::report as smoothed_report;
+use crate::report::warnings::short_segments;
 use crate::settings::Settings;
 use crate::settings::torque::{TorqueModel, TorqueNoise};
 use crate::smoothed::choice::choose;
@@ -61,6 +62,14 @@ use crate::thresholds::smoothed::WALKS;
 pub fn fit_poses(poses: &Poses, settings: &Settings) -> Result<Estimate, FitError> {
     settings.check()?;
     only_of_rates(poses, settings)?;
+    let mut estimate = fitted(poses, settings)?;
+    let short = short_segments(estimate.segments, poses.segments().len());
+    estimate.warnings = short.into_iter().chain(estimate.warnings).collect();
+    Ok(estimate)
+}
+
+/// The fit by the exact motion, or by filter and smoother.
+fn fitted(poses: &Poses, settings: &Settings) -> Result<Estimate, FitError> {
     if needs_smoother(settings) {
         return under_torques(poses, settings);
     }
@@ -239,8 +248,11 @@ fn under_torques(poses: &Poses, settings: &Settings) -> Result<Estimate, FitErro
 /// Refuses settings that have no meaning here.
 fn only_of_rates(poses: &Poses, settings: &Settings) -> Result<(), FitError> {
     let sensor = settings.sensor.named().into_iter();
-    let others =
-        [("the radius of test functions", settings.radius), ("the quantum of the rates", settings.quantum)];
+    let others = [
+        ("the radius of test functions", settings.radius),
+        ("the quantum of the rates", settings.quantum),
+        ("the noise of the rates", settings.noise.filter(|_| !poses.has_rates())),
+    ];
     if needs_smoother(settings) && poses.has_rates() {
         return Err(PoseFault::Torque.into());
     }

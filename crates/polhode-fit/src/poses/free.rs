@@ -134,9 +134,8 @@ impl Free {
 
     /// Whether the noise explains what the free motion leaves, and no torque explains it better.
     pub(crate) fn is_explained(&self, settings: &Settings) -> bool {
-        // differences of neighbours tell the noise from fewer numbers than all readings do
-        let scatter = DEVIATIONS * (2.0 * STILL / self.followed.dof.iter().sum::<f64>().max(1.0)).sqrt();
-        let by_noise = self.misfit(settings).is_none_or(|misfit| misfit <= 1.0 + scatter);
+        let most = by_chance(self.followed.dof.iter().sum());
+        let by_noise = self.misfit(settings).is_none_or(|misfit| misfit <= most);
         let Some(found) = &self.alternatives else { return by_noise };
         let constant = match self.torque {
             Acting::Nothing | Acting::Drag => MOVING,
@@ -147,6 +146,11 @@ impl Free {
             && found.drag.as_ref().is_none_or(|found| found.gain <= MOVING)
             && (self.torque != Acting::Constant || is_linear(&self.followed, &found.constant))
     }
+}
+
+/// The largest misfit of `dof` numbers that chance brings: differences of neighbours tell the noise from fewer numbers than all readings do.
+pub(crate) fn by_chance(dof: f64) -> f64 {
+    1.0 + DEVIATIONS * (2.0 * STILL / dof.max(1.0)).sqrt()
 }
 
 /// Segments that are long enough, without jumps.

@@ -29,7 +29,7 @@ use crate::report::identifiability::Identifiability;
 use crate::report::mirror::{mirror_sigmas, mirrored};
 use crate::report::model::models;
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, WithoutSegment};
-use crate::report::scale::{by_prior, scale_of};
+use crate::report::scale::{Noise, by_prior, check_constant, scale_of};
 use crate::report::torque_free::{InvariantTrend, Whiteness};
 use crate::report::warnings::{Doubts, of_likelihood};
 use crate::settings::Settings;
@@ -102,10 +102,13 @@ pub(crate) fn report(
     let Answer { shape, moments, axes, v } = Answer::new(&answer.x)?;
     let (sigma_principal, sigma_axes) = sigmas(&on_face, &v, &moments);
     let ratios = ratios(&on_face, &v, &moments);
+    let has_attitudes = free.followed.tracks.iter().any(Track::has_attitudes);
+    let rate = if has_attitudes { 0.0 } else { information.levels.rate };
     let (inertia, inertia_covariance) = absolute(
         settings,
-        &rates,
+        (&rates, rate * rate),
         free.read.unit,
+        model_of(free.torque),
         &shape.tensor(),
         &(on_face * on_face.transpose()),
         &answer.x,
@@ -116,7 +119,6 @@ pub(crate) fn report(
     let widened =
         information.tensor.cholesky().zip(bound).map(|(c, b)| (c.inverse().trace() / b.trace()).sqrt());
     let misfit = free.misfit(settings);
-    let has_attitudes = free.followed.tracks.iter().any(Track::has_attitudes);
     let excess = misfit.unwrap_or(1.0);
     let count: f64 = free.followed.dof.iter().sum();
     let pull = answer.pull;
@@ -175,6 +177,7 @@ pub(crate) fn report(
         misfit,
         widened: widened.filter(|_| !free.followed.beyond.is_empty()),
         constant: alternatives.and_then(|found| left_out(&free.followed, &found.constant)),
+        outliers: outliers(free),
     };
     estimate.warnings = of_likelihood(&estimate, &doubts);
     Ok(estimate)
@@ -294,11 +297,13 @@ fn fitted_rates(free: &Free) -> Vec<Stretch> {
     each.collect()
 }
 
-/// The absolute tensor by rates in this unit, where something gives its size, and its covariance.
+/// The absolute tensor by the rates of a fitted motion, where something gives its size, and its covariance; `torque` was fitted, and
+/// readings of the rates had a component of the noise with that `variance`, in units of the fit.
 pub(super) fn absolute(
     settings: &Settings,
-    rates: &[Stretch],
+    (rates, variance): (&[Stretch], f64),
     unit: f64,
+    torque: TorqueModel,
     j: &Matrix3<f64>,
     covariance: &Form,
     x: &Coordinates,
@@ -307,7 +312,8 @@ pub(super) fn absolute(
     let Some(known) = settings.known else {
         return prior.map_or(Ok((None, None)), |prior| by_prior(j, &prior, covariance, x));
     };
-    let scale = scale_of(known, rates, unit, j, 0.0);
+    check_constant(known, &torque_columns(torque))?;
+    let scale = scale_of(known, rates, unit, j, Noise { variance, is_in_rates: false });
     let (inertia, covariance) = scale.sized(known, prior.as_ref(), j, covariance, 1.0, None)?;
     Ok((Some(inertia), Some(covariance)))
 }
@@ -369,6 +375,12 @@ fn summaries(free: &Free, information: &Information) -> Vec<SegmentSummary> {
     each
 }
 
+/// Samples that jump or stand out of the motion.
+fn outliers(free: &Free) -> usize {
+    let out = free.followed.tracks.iter().flat_map(|track| &track.used).filter(|used| !**used);
+    free.read.jumps + out.count()
+}
+
 fn attitudes(
     repeated: usize,
     settings: &Settings,
@@ -376,7 +388,6 @@ fn attitudes(
     told: Told,
     information: &Information,
 ) -> AttitudeFit {
-    let out = free.followed.tracks.iter().map(|t| t.used.iter().filter(|used| !**used).count());
     AttitudeFit {
         noise_sigma: information.levels.attitude,
         noise_is_given: settings.attitude_noise.is_some(),
@@ -385,7 +396,7 @@ fn attitudes(
         is_inverse: told.is_inverse,
         direction_gain: told.gain,
         largest_turn: free.read.largest_turn,
-        left_out: free.read.jumps + out.sum::<usize>(),
+        left_out: outliers(free),
         repeated,
         alignment: free.read.has_rates.then(|| alignment(free, information)),
     }

@@ -1,6 +1,6 @@
 //! The report, drawn from the record, its weak estimate and the nearest physical tensor.
 
-use crate::report::scale::{by_prior, scale_of};
+use crate::report::scale::{Noise, by_prior, check_constant, scale_of};
 use nalgebra::{DMatrix, Matrix3, SMatrix};
 use polhode::inertia::Inertia;
 use polhode::record::{Record, Spike};
@@ -226,7 +226,9 @@ impl Facts<'_> {
         let Some(known) = self.settings.known else {
             return prior.map_or(Ok((None, None)), |prior| by_prior(j, &prior, covariance, &at.x));
         };
-        let scale = scale_of(known, self.stretches, self.rms, j, self.variance);
+        check_constant(known, &self.chosen.weak.columns)?;
+        let noise = Noise { variance: self.variance, is_in_rates: true };
+        let scale = scale_of(known, self.stretches, self.rms, j, noise);
         let excess = self.excess();
         let (inertia, covariance) = scale.sized(known, prior.as_ref(), j, covariance, excess, motions)?;
         Ok((Some(inertia), Some(covariance)))

@@ -52,6 +52,31 @@ pub enum NextStep {
     },
 }
 
+/// Where something comes from that a fit takes to be zero and the record shows.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// A constant error of the sensor, which a fit can estimate with a prior.
+    Sensor,
+    /// Offsets of the sensor that change.
+    Drift,
+    /// The momentum of wheels as the record tells it.
+    Wheels,
+    /// The body, or what acts on it: a wheel of which the record tells nothing, a magnet.
+    Body,
+}
+
+impl Origin {
+    /// What helps, in words that go on from what the tensor may be.
+    pub(crate) fn remedy(self) -> &'static str {
+        match self {
+            Self::Sensor => ", unless they are fitted too, with a prior",
+            Self::Wheels => "; look at the inertia, the axis and the speed of each wheel",
+            Self::Drift | Self::Body => "",
+        }
+    }
+}
+
 /// What contradicts a fit.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,8 +85,8 @@ pub enum Contradiction {
     LeftOut {
         /// What it is, in words.
         what: &'static str,
-        /// Whether it is an error of the sensor.
-        is_of_sensor: bool,
+        /// Where it comes from.
+        origin: Origin,
     },
     /// The parts of the record contradict each other.
     Parts,
@@ -72,11 +97,19 @@ pub enum Contradiction {
 impl fmt::Display for Contradiction {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::LeftOut { what, is_of_sensor: true } => write!(
+            Self::LeftOut { what, origin: Origin::Sensor } => write!(
                 f,
                 "calibrate the sensor, or let the fit estimate its error with a prior: the record shows {what}, which further records do not average out"
             ),
-            Self::LeftOut { what, .. } => write!(
+            Self::LeftOut { what, origin: Origin::Drift } => write!(
+                f,
+                "let the sensor warm up, use one that drifts less, or record for a shorter time: the record shows {what}"
+            ),
+            Self::LeftOut { what, origin: Origin::Wheels } => write!(
+                f,
+                "check the inertia, the axis and the speed of each wheel: the record shows {what}; further records do not average it out"
+            ),
+            Self::LeftOut { what, origin: Origin::Body } => write!(
                 f,
                 "find out whether there is {what}, and remove it: the record shows it, and further records do not average it out"
             ),
@@ -146,9 +179,7 @@ impl Estimate {
     /// The clearest of what warnings say.
     fn contradiction(&self) -> Option<Contradiction> {
         let of = |warning: &Warning| match warning {
-            Warning::LeftOut { what, remedy, .. } => {
-                Some(Contradiction::LeftOut { what, is_of_sensor: !remedy.is_empty() })
-            }
+            Warning::LeftOut { what, origin, .. } => Some(Contradiction::LeftOut { what, origin: *origin }),
             Warning::Halves(_) | Warning::Scatter(_) | Warning::Differing { .. } => {
                 Some(Contradiction::Parts)
             }

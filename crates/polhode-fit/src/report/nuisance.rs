@@ -97,7 +97,7 @@ pub struct SegmentSummary {
     pub samples: usize,
     /// Noise of one component of its rates, rad/s.
     pub noise_sigma: f64,
-    /// Power spectral density of its torque noise, (rad/s²)² s.
+    /// Power spectral density of the angular acceleration that its torque noise makes, the mean of the three components, (rad/s²)² s.
     pub torque_noise: f64,
     /// Its share of the information about the tensor: the shares of all segments sum to 1.
     pub weight: f64,

@@ -9,17 +9,46 @@ use nalgebra::{Matrix3, SMatrix, SVector};
 use polhode::inertia::Inertia;
 
 use crate::bound::motions::Motions;
+use crate::columns::column::Column;
+use crate::columns::effect::Class;
 use crate::physical::coordinates::{Coordinates, ENTRIES, Form, basis, entries_of_coordinates, pair};
 use crate::signal::stretch::Stretch;
 
-/// The trace that a known quantity gives to a tensor of shape `j` from rates in units of their root mean square `rms`, rad/s, whose noise has
-/// `variance` in those units.
+/// Variance of a component of the noise of rates, in units of their root mean square.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Noise {
+    /// Of the readings.
+    pub(crate) variance: f64,
+    /// Whether the rates are those readings; else they are those of the motion that was fitted to them.
+    pub(crate) is_in_rates: bool,
+}
+
+/// Refuses a size by a momentum or an energy that is not constant, or whose mean cannot be read: `columns` were fitted.
+///
+/// # Errors
+/// With the names of those that act on the body or on the readings.
+pub(crate) fn check_constant(known: Known, columns: &[Column]) -> Result<(), FitError> {
+    let quantity = match known {
+        Known::Momentum(_) => "the angular momentum",
+        Known::TwiceEnergy(_) => "the kinetic energy",
+        Known::Moment { .. } | Known::Trace(_) => return Ok(()),
+    };
+    let mut names: Vec<&'static str> = columns
+        .iter()
+        .filter(|column| column.class() != Class::Input)
+        .map(|column| column.label().name)
+        .collect();
+    names.dedup();
+    if names.is_empty() { Ok(()) } else { Err(FitError::SizeVaries { quantity, names }) }
+}
+
+/// The trace that a known quantity gives to a tensor of shape `j` from rates in units of their root mean square `rms`, rad/s.
 pub(crate) fn scale_of(
     known: Known,
     stretches: &[Stretch],
     rms: f64,
     j: &Matrix3<f64>,
-    variance: f64,
+    noise: Noise,
 ) -> Scale {
     match known {
         Known::Trace(trace) => Scale { trace, slope: Coordinates::zeros(), mean: None },
@@ -30,14 +59,14 @@ pub(crate) fn scale_of(
             Scale { trace, slope: pair(&n, &n) * (-trace / share), mean: None }
         }
         Known::TwiceEnergy(value) => {
-            let mean = Mean::new(stretches, *j, basis, variance);
+            let mean = Mean::new(stretches, *j, basis, noise);
             // one by one, so that no square of a rate underflows
             let trace = value / rms / rms / mean.value;
             mean.scale(trace, 1.0)
         }
         Known::Momentum(value) => {
             let change = |k| j * basis(k) + basis(k) * j;
-            let mean = Mean::new(stretches, j * j, change, variance);
+            let mean = Mean::new(stretches, j * j, change, noise);
             let trace = value / rms / mean.value.sqrt();
             mean.scale(trace, 0.5)
         }
@@ -56,19 +85,22 @@ struct Mean {
 }
 
 impl Mean {
-    /// ω + n has ω·M ω + 2 n·M ω + n·M n: a mean that is larger by σ² tr M, a variance of 4 σ² |M ω|² + 2 σ⁴ tr M².
+    /// ω + n has ω·M ω + 2 n·M ω + n·M n: a mean that is larger by σ² tr M, a variance of 4 σ² |M ω|² + 2 σ⁴ tr M². The mean over a motion
+    /// that was fitted to the readings has no such bias, and at a given shape no larger variance.
     fn new(
         stretches: &[Stretch],
         m: Matrix3<f64>,
         change: impl Fn(usize) -> Matrix3<f64>,
-        variance: f64,
+        noise: Noise,
     ) -> Mean {
+        let variance = noise.variance;
         let (mut scatter, mut samples) = (Matrix3::zeros(), 0.0);
         for w in stretches.iter().flat_map(|s| &s.rates) {
             scatter += w * w.transpose();
             samples += 1.0;
         }
-        let scatter = scatter / samples - Matrix3::identity() * variance;
+        let bias = if noise.is_in_rates { variance } else { 0.0 };
+        let scatter = scatter / samples - Matrix3::identity() * bias;
         let of_one = 4.0 * scatter.dot(&(m * m)).max(0.0) + 2.0 * variance * m.norm_squared();
         let slope = Coordinates::from_fn(|k, _| scatter.dot(&change(k)));
         Mean { m, value: scatter.dot(&m), slope, variance: variance * of_one / samples, samples }
@@ -182,7 +214,8 @@ mod tests {
         let times: Vec<f64> = (0..40).map(|i| 0.1 * f64::from(i)).collect();
         let rates = times.iter().map(|t| Vector3::new(0.3, 1.0 - 0.1 * t, 0.2 * t)).collect();
         let j = Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45));
-        let scale = scale_of(Known::TwiceEnergy(3.0), &[Stretch::new(times, rates)], 1.0, &j, 1e-4);
+        let noise = Noise { variance: 1e-4, is_in_rates: true };
+        let scale = scale_of(Known::TwiceEnergy(3.0), &[Stretch::new(times, rates)], 1.0, &j, noise);
         let factor = Form::from_fn(|i, k| 1e-3 / (1.0 + ((3 * i + 2 * k) % 7) as f64));
         let shape = factor * factor.transpose();
         let of_shape = scale.covariance(&j, &shape, 0.0, None);

@@ -1,16 +1,20 @@
 //! The segments of a record, each with its noise and what it contributes.
 
+use nalgebra::Matrix3;
+
 use crate::physical::coordinates::{Coordinates, Form};
 use crate::report::answer::ratios_of;
 use crate::report::nuisance::{SegmentSummary, WithoutSegment};
-use crate::signal::covariance::Shape;
+use crate::signal::covariance::{Levels, acceleration_density};
 use crate::signal::stretch::Stretch;
 use crate::solve::stacked::Stacked;
 use crate::solve::weak_estimate::{Part, WeakEstimate};
 
 /// A segment, and what the others say.
 pub(crate) struct Summary {
+    /// Its torque noise is still that of an angular acceleration that is alike along all axes.
     own: SegmentSummary,
+    levels: Levels,
     others: Option<Others>,
 }
 
@@ -24,13 +28,15 @@ struct Others {
 }
 
 impl Summary {
-    /// With deviations for noise of the variance `enlarged`, and what else is `added` to the covariance of the tensor.
-    pub(crate) fn complete(self, enlarged: f64, added: &Form) -> SegmentSummary {
-        let Summary { own, others } = self;
+    /// Of a body of the tensor `j` with the trace 1, with deviations for noise of the variance `enlarged`, and what else is `added` to the
+    /// covariance of the tensor.
+    pub(crate) fn complete(self, j: &Matrix3<f64>, enlarged: f64, added: &Form) -> SegmentSummary {
+        let Summary { own, levels, others } = self;
         let without = others.map(|others| {
             WithoutSegment::new(&others.x, &(others.covariance * enlarged + added), others.shift)
         });
-        SegmentSummary { without, ..own }
+        let torque_noise = own.torque_noise * acceleration_density(levels.shape, j);
+        SegmentSummary { torque_noise, without, ..own }
     }
 }
 
@@ -55,19 +61,15 @@ pub(crate) fn summaries(weak: &WeakEstimate, stretches: &[Stretch], variance: f6
             Some(Others { x, covariance: kept.cholesky()?.inverse(), shift })
         };
         let (levels, stretch) = (part.levels, &stretches[part.stretch]);
-        let share = match levels.shape {
-            Shape::Moments => 1.0,
-            Shape::Alike => 1.0 / 9.0,
-        };
         let own = SegmentSummary {
             segment: stretch.segment,
             samples: stretch.times.len(),
             noise_sigma: (levels.white * variance).sqrt() * rms,
-            torque_noise: levels.torque * share * variance * rms * rms * rms,
+            torque_noise: levels.torque * variance * rms * rms * rms,
             weight,
             without: None,
         };
-        Summary { own, others: without() }
+        Summary { own, levels, others: without() }
     });
     let mut summaries: Vec<Summary> = each.collect();
     let sum: f64 = summaries.iter().map(|s| s.own.weight).sum();

@@ -6,6 +6,7 @@ use crate::columns::sets::{magnet_columns, told_components, walk_columns};
 use crate::models::equations::Equations;
 use crate::models::reading_error::{ReadingError, Units};
 use crate::physical::coordinates::tensor;
+use crate::report::next_step::Origin;
 use crate::report::parts::quantile;
 use crate::report::systematic::momentum;
 use crate::signal::stretch::Stretch;
@@ -19,8 +20,8 @@ use crate::thresholds::warnings::{LEFT_OUT, SENSOR};
 pub(crate) struct Suspect {
     /// What they are, in words.
     pub(crate) what: &'static str,
-    /// What helps, in words that go on from what the tensor may be.
-    pub(crate) remedy: &'static str,
+    /// Where they come from.
+    pub(crate) origin: Origin,
     /// The largest of them.
     pub(crate) size: f64,
     /// Its unit, empty for a ratio.
@@ -31,31 +32,28 @@ pub(crate) struct Suspect {
     pub(crate) reached: Option<Unknowns>,
 }
 
-/// What may be left out of a fit, with its columns and what to do about it.
+/// What may be left out of a fit, with its columns.
 struct Kind {
     what: &'static str,
-    remedy: &'static str,
+    origin: Origin,
     /// Each with the deviation that is plausible for it.
     columns: Vec<Column>,
     /// The unit of the fit in that of the report.
     unit: (f64, &'static str),
-    is_told: bool,
 }
 
 /// What it is called that there is a wheel.
 pub(crate) const ROTOR: &str = "a wheel that turns in the body";
-const FIT_IT: &str = ", unless they are fitted too, with a prior";
-const LOOK: &str = "; look at the inertia, the axis and the speed of each wheel";
 
 /// All of them in a record whose unit of the rates is `rms`, rad/s.
 fn kinds(weak: &WeakEstimate, stretches: &[Stretch], rms: f64) -> Vec<Kind> {
-    let of = |what, remedy, columns: Vec<Column>| {
+    let of = |what, origin, columns: Vec<Column>| {
         let unit =
             columns.first().map(Column::label).map_or((1.0, ""), |label| (label.factor(rms), label.unit));
-        Kind { what, remedy, columns, unit, is_told: false }
+        Kind { what, origin, columns, unit }
     };
     let units = Units { rms, input: terms_of_all(&weak.columns, &weak.at).input };
-    let sensor = |error: ReadingError| of(error.in_words(), FIT_IT, error.columns(stretches, units));
+    let sensor = |error: ReadingError| of(error.in_words(), Origin::Sensor, error.columns(stretches, units));
     let sized = |column: Column, size| column.with_prior(Some(size));
     let walk = walk_columns(stretches, RANDOM_WALK / rms / rms.sqrt(), WALK_STEPS);
     let momentum = momentum(stretches, &tensor(&weak.x()));
@@ -65,16 +63,16 @@ fn kinds(weak: &WeakEstimate, stretches: &[Stretch], rms: f64) -> Vec<Kind> {
     let told = told_components(stretches).into_iter().filter(|_| units.input != 0.0).map(|axis| {
         let error = ReadingError::Wheel(axis);
         let (columns, unit) = (error.columns(stretches, units), (error.factor(units), "of it"));
-        Kind { what: error.in_words(), remedy: LOOK, columns, unit, is_told: true }
+        Kind { what: error.in_words(), origin: Origin::Wheels, columns, unit }
     });
     let all = [
         sensor(ReadingError::Misalignment),
         sensor(ReadingError::AxisScales),
         sensor(ReadingError::Offsets),
         sensor(ReadingError::Delays),
-        of("offsets of the sensor that change", "", walk),
-        of(ROTOR, "", rotors.map(|column| sized(column, momentum)).to_vec()),
-        of("a torque that is fixed in space, as on a magnet or of a suspension", "", magnet),
+        of("offsets of the sensor that change", Origin::Drift, walk),
+        of(ROTOR, Origin::Body, rotors.map(|column| sized(column, momentum)).to_vec()),
+        of("a torque that is fixed in space, as on a magnet or of a suspension", Origin::Body, magnet),
     ];
     all.into_iter().chain(told).collect()
 }
@@ -94,14 +92,15 @@ pub(crate) fn suspect(
     let tried = Tried { weak, errors, whitened: &whitened, variance };
     let each = kinds(weak, stretches, rms).into_iter().filter_map(|kind| {
         let (best, gain) = tried.with(&kind.columns)?;
-        let Kind { what, remedy, columns, unit, is_told } = kind;
+        let Kind { what, origin, columns, unit } = kind;
         let by_chance = 0.5 * quantile(columns.len() as f64, LEFT_OUT);
         // torques of real bodies, of which some look like torque noise, are not those of the fit either
         let least = if is_noisy { by_chance.max(SENSOR) } else { by_chance };
         let (own, others) = best.c.split_at(columns.len());
         let size = own.iter().fold(0.0, |largest: f64, value| largest.max(value.abs())) * unit.0;
+        let is_told = origin == Origin::Wheels;
         let reached = is_told.then(|| Unknowns { x: best.x, c: others.to_vec() });
-        let suspect = Suspect { what, remedy, size, unit: unit.1, gain, reached };
+        let suspect = Suspect { what, origin, size, unit: unit.1, gain, reached };
         (gain > least).then_some((gain - columns.len() as f64, suspect))
     });
     // more unknowns explain more in any case

@@ -22,6 +22,7 @@ use crate::report::torque_free::Whiteness;
 use crate::report::warnings::of_smoothed;
 use crate::settings::Settings;
 use crate::settings::torque::TorqueModel;
+use crate::signal::covariance::{Shape, acceleration_density};
 use crate::signal::stretch::Stretch;
 use crate::smoothed::choice::Chosen;
 use crate::verdict::prior::{check_agreement, consistent};
@@ -81,7 +82,8 @@ pub(crate) fn report(
     let (sigma_principal, sigma_axes) = sigmas(&on_face, &v, &moments);
     let ratios = ratios(&on_face, &v, &moments);
     let (j, both) = (shape.tensor(), on_face * on_face.transpose());
-    let (inertia, inertia_covariance) = absolute(settings, &rates, read.unit, &j, &both, &answer.x)?;
+    let (inertia, inertia_covariance) =
+        absolute(settings, (&rates, 0.0), read.unit, chosen.model, &j, &both, &answer.x)?;
     let residuals: Vec<Residuals> = found
         .whitened
         .iter()
@@ -165,14 +167,11 @@ pub(crate) fn report(
     Ok(estimate)
 }
 
-/// Power spectral density of the angular acceleration, (rad/s²)² s: of a torque that is alike along all axes the mean of the three.
+/// Power spectral density of the angular acceleration, (rad/s²)² s.
 fn torque_noise(chosen: &Chosen, unit: f64, j: &Matrix3<f64>) -> f64 {
     let level = chosen.found.level;
-    let share = match level.shape {
-        0 => 1.0,
-        _ => j.try_inverse().map_or(0.0, |inverse| (inverse * inverse).trace() / 27.0),
-    };
-    level.torque * chosen.found.variance * share * unit * unit * unit
+    let shape = if level.shape == 0 { Shape::Moments } else { Shape::Alike };
+    level.torque * chosen.found.variance * acceleration_density(shape, j) * unit * unit * unit
 }
 
 fn torque(chosen: &Chosen, excess: f64, unit: f64, is_chosen: bool) -> FittedTorque {

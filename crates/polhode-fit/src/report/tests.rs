@@ -188,11 +188,14 @@ fn an_answer_is_warned_of_beyond_its_thresholds() {
 #[test]
 fn doubts_about_a_likelihood_are_warned_of_with_their_numbers() {
     let clean = clean();
-    let none = Doubts { misfit: None, widened: None, constant: None };
+    let none = Doubts { misfit: None, widened: None, constant: None, outliers: 0 };
     assert!(of_likelihood(&clean, &none).is_empty());
-    let doubts = Doubts { misfit: None, widened: Some(1.7), constant: Some((9.0, 0.4)) };
+    let doubts = Doubts { widened: Some(1.7), constant: Some((9.0, 0.4)), ..none };
     let expected = [Warning::Profile { times: 1.7 }, Warning::ConstantTorque { gain: 9.0, turn: 0.4 }];
     assert_eq!(of_likelihood(&clean, &doubts), expected);
+    // of rates alone too
+    let doubts = Doubts { outliers: 4, ..none };
+    assert_eq!(of_likelihood(&clean, &doubts), [Warning::Outliers { samples: 4 }]);
     let mut e = clean.clone();
     e.momentum_trend = Some(InvariantTrend { rate: 0.06, sigma: 0.01 });
     assert_eq!(
@@ -233,7 +236,16 @@ fn doubts_about_a_likelihood_are_warned_of_with_their_numbers() {
         Warning::CoarseAttitudes { turn },
         Warning::AttitudeResiduals { times: 3.0, noise: 0.01 },
     ];
-    assert_eq!(of_likelihood(&e, &Doubts { misfit: Some(9.0), ..none }), expected);
+    assert_eq!(of_likelihood(&e, &Doubts { misfit: Some(9.0), outliers: 3, ..none }), expected);
+    assert_eq!(of_smoothed(&e, Some(9.0), 0.0), expected);
+    // chance brings more in few numbers: five deviations of what neighbours tell of the noise
+    let is_told = |dof: usize, misfit: f64| {
+        let e = Estimate { dof, ..e.clone() };
+        let list = of_likelihood(&e, &Doubts { misfit: Some(misfit), ..none });
+        list.iter().any(|warning| matches!(warning, Warning::AttitudeResiduals { .. }))
+    };
+    assert!(!is_told(160, 2.2) && is_told(160, 2.3));
+    assert!(!is_told(1_000_000, 1.19) && is_told(1_000_000, 1.21));
 }
 
 fn open(singular: [f64; 5], scatter: Matrix3<f64>) -> Identifiability {

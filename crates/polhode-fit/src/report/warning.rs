@@ -5,6 +5,7 @@ use core::fmt;
 use crate::error::{per_cent, with_sigma};
 use crate::models::reading_error::ReadingError;
 use crate::physical::constraint::ActiveConstraint;
+use crate::report::next_step::Origin;
 use crate::report::nuisance::FittedTorque;
 use crate::report::parts::{Halves, Scatter};
 use crate::report::torque_free::{InvariantTrend, Memory, Whiteness};
@@ -57,12 +58,12 @@ pub enum Warning {
     },
     /// The residuals ask for a torque at random, which is more than a small part of what drives the body.
     TorqueNoise {
-        /// Largest power spectral density of the angular acceleration among the segments, (rad/s²)² s.
+        /// Largest power spectral density of the angular acceleration among the segments, the mean of the three components, (rad/s²)² s.
         density: f64,
         /// Share of |dω/dt|² that free motion leaves unexplained, where it is known.
         unexplained: Option<f64>,
     },
-    /// Segments were left out, as too short for the test functions.
+    /// Segments were left out as too short: for the test functions, or for a motion of their own.
     ShortSegments {
         /// Segments that were left out.
         short: usize,
@@ -140,8 +141,8 @@ pub enum Warning {
         unit: &'static str,
         /// Gain of log-likelihood with it, the torque noise as it was fitted without it.
         gain: f64,
-        /// What helps, in words that go on from what the tensor may be.
-        remedy: &'static str,
+        /// Where it comes from.
+        origin: Origin,
     },
     /// Two parts of the record contradict each other.
     Halves(Halves),
@@ -258,14 +259,15 @@ impl fmt::Display for Warning {
                 )
             }
             Self::TorqueNoise { density, unexplained } => {
-                write!(f, "torques at random are part of the fit, with a density of up to {density:.1e} (rad/s^2)^2 s")?;
+                write!(f, "torques at random are part of the fit: their angular acceleration has a density of up to {density:.1e} (rad/s^2)^2 s")?;
                 if let Some(share) = unexplained {
-                    write!(f, ": free motion leaves {} of the squared derivative of the rates unexplained", per_cent(*share))?;
+                    write!(f, ", and free motion leaves {} of the squared derivative of the rates unexplained", per_cent(*share))?;
                 }
                 f.write_str("; errors of the measurement may look like them")
             }
             Self::ShortSegments { short, segments } => {
-                write!(f, "{short} of {segments} segments are too short for the test functions")
+                let verb = if *short == 1 { "was" } else { "were" };
+                write!(f, "{short} of {segments} segments {verb} left out as too short for the fit")
             }
             Self::Residuals { times, noise } => {
                 let times = if *times < 1e4 { format!("{times:.1}") } else { format!("{times:.1e}") };
@@ -333,13 +335,14 @@ impl fmt::Display for Warning {
                  turn the body by {turn:.2} rad within half of the longest segment: fit shorter windows, in which it turns the body by less than \
                  {LINEAR} rad, with a constant torque, or the rates"
             ),
-            Self::LeftOut { what, size, unit, gain, remedy } => {
+            Self::LeftOut { what, size, unit, gain, origin } => {
                 let size = format!("{size:.1e} {unit}");
                 write!(
                     f,
                     "{what}, up to {}, would explain the record better than what was fitted (log-likelihood higher by {gain:.0}): \
-                     the tensor may be off by more than its deviations{remedy}",
-                    size.trim_end()
+                     the tensor may be off by more than its deviations{}",
+                    size.trim_end(),
+                    origin.remedy()
                 )
             }
             Self::Halves(Halves { share, first, second, chi2 }) => write!(

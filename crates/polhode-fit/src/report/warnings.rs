@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use polhode::record::{Record, Segment, Spike};
 
 use crate::models::reading_error::ReadingError;
+use crate::poses::free::by_chance;
 use crate::report::attitudes::AttitudeFit;
 use crate::report::differing::Differing;
 use crate::report::estimate::Estimate;
@@ -24,6 +25,40 @@ pub(crate) fn has_zero_inputs(record: &Record) -> bool {
     let inputs = || record.segments.iter().filter_map(Segment::inputs);
     let values = || inputs().flat_map(|inputs| inputs.wheel.iter().chain(&inputs.torque));
     values().next().is_some() && values().all(|value| *value == Vector3::zeros())
+}
+
+/// What was left out of the rates of a record before the fit: samples, `spikes` among them, and all but `used` segments.
+pub(crate) fn of_record(record: &Record, spikes: &[Spike], used: usize) -> Vec<Warning> {
+    let mut list = Vec::new();
+    if record.merged() > 0 {
+        list.push(Warning::Merged { samples: record.merged() });
+    }
+    if let Some(rate) = record.new_readings_rate() {
+        list.push(Warning::Repeated { samples: record.repeated(), rate });
+    }
+    if record.stale() > 0 {
+        list.push(Warning::Stale { samples: record.stale() });
+    }
+    if record.saturated() > 0 {
+        list.push(Warning::Saturated { samples: record.saturated() });
+    }
+    let (in_bursts, alone): (Vec<&Spike>, Vec<&Spike>) =
+        spikes.iter().partition(|spike| spike.burst.is_some());
+    if let Some(first) = alone.first() {
+        list.push(Warning::Spikes { samples: alone.len(), line: first.line });
+    }
+    if let Some(first) = in_bursts.first() {
+        let (samples, bursts) = Spike::bursts(spikes);
+        list.push(Warning::Bursts { samples, bursts, line: first.line });
+    }
+    list.extend(short_segments(used, record.segments.len()));
+    list
+}
+
+/// That all but `used` of the segments were too short, where there are others.
+pub(crate) fn short_segments(used: usize, segments: usize) -> Option<Warning> {
+    let short = segments.saturating_sub(used);
+    (short > 0).then_some(Warning::ShortSegments { short, segments })
 }
 
 /// What warnings are drawn from, besides the estimate.
@@ -84,31 +119,7 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     if has_zero_inputs(record) {
         list.push(Warning::ZeroInputs);
     }
-    if record.merged() > 0 {
-        list.push(Warning::Merged { samples: record.merged() });
-    }
-    if let Some(rate) = record.new_readings_rate() {
-        list.push(Warning::Repeated { samples: record.repeated(), rate });
-    }
-    if record.stale() > 0 {
-        list.push(Warning::Stale { samples: record.stale() });
-    }
-    if record.saturated() > 0 {
-        list.push(Warning::Saturated { samples: record.saturated() });
-    }
-    let (in_bursts, alone): (Vec<&Spike>, Vec<&Spike>) =
-        e.spikes.iter().partition(|spike| spike.burst.is_some());
-    if let Some(first) = alone.first() {
-        list.push(Warning::Spikes { samples: alone.len(), line: first.line });
-    }
-    if let Some(first) = in_bursts.first() {
-        let (samples, bursts) = Spike::bursts(&e.spikes);
-        list.push(Warning::Bursts { samples, bursts, line: first.line });
-    }
-    let short = record.segments.len() - e.segments;
-    if short > 0 {
-        list.push(Warning::ShortSegments { short, segments: record.segments.len() });
-    }
+    list.extend(of_record(record, &e.spikes, e.segments));
     if misfit > (1.0 + DEVIATIONS * (2.0 / e.dof.max(1) as f64).sqrt()).max(RESIDUALS) {
         list.push(Warning::Residuals { times: misfit.sqrt(), noise: e.noise_sigma });
     }
@@ -138,8 +149,8 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     if noise_found && density > 0.0 && e.unexplained.is_none_or(|share| share > UNEXPLAINED) {
         list.push(Warning::TorqueNoise { density, unexplained: e.unexplained });
     }
-    if let Some(&Suspect { what, remedy, size, unit, gain, .. }) = suspect {
-        list.push(Warning::LeftOut { what, size, unit, gain, remedy });
+    if let Some(&Suspect { what, origin, size, unit, gain, .. }) = suspect {
+        list.push(Warning::LeftOut { what, size, unit, gain, origin });
     }
     list.extend(halves(weak, grounds.variance * misfit.max(1.0)).map(Warning::Halves));
     list.extend(grounds.scatter.map(Warning::Scatter));
@@ -168,26 +179,29 @@ pub(super) struct Doubts {
     pub(super) widened: Option<f64>,
     /// Gain of log-likelihood by a constant torque that is left out, and by how much that turns the body, rad.
     pub(super) constant: Option<(f64, f64)>,
+    /// Samples that were left out because they jump or stand out of the motion.
+    pub(super) outliers: usize,
 }
 
 /// What limits the use of a tensor of the largest likelihood.
 pub(super) fn of_likelihood(e: &Estimate, doubts: &Doubts) -> Vec<Warning> {
-    let Doubts { misfit, widened, constant } = *doubts;
+    let Doubts { misfit, widened, constant, outliers } = *doubts;
     let mut list: Vec<Warning> = widened.map(|times| Warning::Profile { times }).into_iter().collect();
     list.extend(constant.map(|(gain, turn)| Warning::ConstantTorque { gain, turn }));
+    let repeated = e.attitudes.as_ref().map_or(0, |attitudes| attitudes.repeated);
+    if repeated > 0 {
+        list.push(Warning::RepeatedAttitudes { samples: repeated });
+    }
+    if outliers > 0 {
+        list.push(Warning::Outliers { samples: outliers });
+    }
     if let Some(attitudes) = &e.attitudes {
-        let AttitudeFit { repeated, left_out, largest_turn: turn, noise_sigma, .. } = *attitudes;
-        if repeated > 0 {
-            list.push(Warning::RepeatedAttitudes { samples: repeated });
-        }
-        if left_out > 0 {
-            list.push(Warning::Outliers { samples: left_out });
-        }
+        let AttitudeFit { largest_turn: turn, noise_sigma, .. } = *attitudes;
         if turn > DOUBTFUL {
             list.push(Warning::CoarseAttitudes { turn });
         }
-        let times = misfit.map_or(1.0, f64::sqrt);
-        if times * times > RESIDUALS {
+        let most = by_chance(e.dof as f64).max(RESIDUALS);
+        if let Some(times) = misfit.filter(|misfit| *misfit > most).map(f64::sqrt) {
             list.push(Warning::AttitudeResiduals { times, noise: noise_sigma / times });
         }
         if let Some(alignment) = attitudes.alignment.filter(|alignment| alignment.moving_gain > MOVING) {
@@ -208,7 +222,8 @@ pub(super) fn of_likelihood(e: &Estimate, doubts: &Doubts) -> Vec<Warning> {
 
 /// The same of attitudes under torques; `misfit` is what is left over the noise, where that is known, `density` that of torque noise.
 pub(super) fn of_smoothed(e: &Estimate, misfit: Option<f64>, density: f64) -> Vec<Warning> {
-    let doubts = Doubts { misfit, widened: None, constant: None };
+    let outliers = e.attitudes.as_ref().map_or(0, |attitudes| attitudes.left_out);
+    let doubts = Doubts { misfit, widened: None, constant: None, outliers };
     let noise = (density > 0.0).then_some(Warning::TorqueNoise { density, unexplained: e.unexplained });
     noise.into_iter().chain(of_likelihood(e, &doubts)).collect()
 }

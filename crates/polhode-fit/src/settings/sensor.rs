@@ -22,7 +22,7 @@ pub struct SensorPriors {
     pub axis_scales: Option<f64>,
     /// Of the angles by which pairs of axes are not at right angles, rad.
     pub misalignment: Option<f64>,
-    /// Of the delays of the y and z axes behind the x axis, s.
+    /// Of the delays of the readings of the y and z axes against the x axis, s: positive where a reading shows the motion of an earlier time.
     pub skew: Option<f64>,
 }
 

@@ -41,6 +41,15 @@ pub(crate) fn torque_shape(shape: Shape, j: &Matrix3<f64>) -> Matrix3<f64> {
     }
 }
 
+/// Power spectral density of the angular acceleration that torque noise of level 1 makes: the mean of the three components.
+pub(crate) fn acceleration_density(shape: Shape, j: &Matrix3<f64>) -> f64 {
+    match shape {
+        Shape::Moments => 1.0,
+        // a third of the trace of J⁻¹ (1/9) J⁻¹
+        Shape::Alike => j.try_inverse().map_or(0.0, |inverse| (inverse * inverse).trace() / 27.0),
+    }
+}
+
 /// The covariance of the equations of one stretch at any levels of noise.
 #[derive(Clone)]
 pub(crate) struct Covariance {

@@ -25,7 +25,8 @@ pub struct Gyroscope {
     pub axis_scales: Vector3<f64>,
     /// Γ_xy, Γ_xz, Γ_yz, rad: how far each axis leans towards another. The angle of the pair is off by twice that.
     pub misalignment: Vector3<f64>,
-    /// How much later each axis is read than the time says, s.
+    /// How much later each axis is read than the time says, s. A delay of the reading behind the motion, which a fit estimates, has the other
+    /// sign.
     pub skew: Vector3<f64>,
     /// Step of the digital output, rad/s; 0 for none.
     pub quantum: f64,

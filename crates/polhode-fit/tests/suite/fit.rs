@@ -5,7 +5,8 @@ use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_files::record::{self, ReadOptions};
 use polhode_fit::{
-    Constraint, Estimate, FitError, Known, Record, Settings, TorqueModel, fit, foreseen_bound, simulate,
+    Constraint, Estimate, FitError, Known, Record, SensorPriors, Settings, TorqueModel, fit, foreseen_bound,
+    simulate,
 };
 
 use crate::measured::{ENTRIES, distance, entries, example, random_rotation, record, sampled, times, turned};
@@ -308,6 +309,43 @@ fn scale_from_what_is_known_besides() {
     }
     let shape_only = fit(&record, &Settings::default()).unwrap();
     assert!(shape_only.inertia.is_none() && shape_only.inertia_covariance.is_none());
+}
+
+/// |L| and the energy are no constants under a torque, and their means cannot be read through an offset.
+#[test]
+fn a_size_by_what_varies_is_refused() {
+    let (j, times, rates) = example(1e-3);
+    let record = Record::from_samples(&times, &rates).unwrap();
+    let known = Settings::default().with_known(Known::Momentum(j.norm()));
+    let offset = known.clone().with_sensor(SensorPriors::default().with_offset(Some(0.1)));
+    for (settings, what) in [(known.with_torque(TorqueModel::Drag), "drag"), (offset, "offset_x")] {
+        match fit(&record, &settings) {
+            Err(FitError::SizeVaries { names, .. }) => assert_eq!(names[0], what),
+            other => panic!("{what}: {:?}", other.map(|estimate| estimate.principal)),
+        }
+    }
+    let settings = Settings::default().with_torque(TorqueModel::Drag).with_known(Known::Trace(1.0));
+    assert!(fit(&record, &settings).unwrap().inertia.is_some());
+}
+
+/// Few samples a period: the fit follows the exact motion, and the size carries the noise of the readings all the same.
+#[test]
+fn a_size_from_sparse_readings_scatters_as_it_claims() {
+    let (body, omega) = (Inertia::from_moments([1.0, 2.0, 2.6]).unwrap(), Vector3::new(0.3, 1.0, 0.4));
+    let times: Vec<f64> = (0..45).map(|i| 0.9 * f64::from(i)).collect();
+    let momentum = (body.tensor() * omega).norm();
+    let (mut squares, mut count) = (0.0, 0.0);
+    for seed in 0..16 {
+        let rates = simulate(&body, omega, &times, 0.02, &mut Random::new(seed)).unwrap();
+        let settings = Settings::default().with_known(Known::Momentum(momentum));
+        let Ok(estimate) = fit(&Record::from_samples(&times, &rates).unwrap(), &settings) else { continue };
+        let c = estimate.inertia_covariance.unwrap();
+        let off = estimate.inertia.unwrap().tensor().trace() - 5.6;
+        squares += off * off / c.fixed_view::<3, 3>(0, 0).sum();
+        count += 1.0;
+    }
+    let rms = f64::sqrt(squares / count);
+    assert!(count > 8.0 && rms > 0.4 && rms < 1.4, "{rms} of {count}");
 }
 
 /// Noise of the rates enlarges their mean squares, here by some fifteen deviations; it is taken off.

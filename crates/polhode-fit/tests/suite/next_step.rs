@@ -4,8 +4,8 @@ use nalgebra::Vector3;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_fit::{
-    Contradiction, Disturbances, Estimate, Gyroscope, NextStep, Poses, Record, Settings, fit, fit_poses,
-    simulate, simulate_poses, simulate_with,
+    Contradiction, Disturbances, Estimate, Gyroscope, NextStep, Origin, Poses, Record, Settings, fit,
+    fit_poses, simulate, simulate_poses, simulate_with,
 };
 
 fn fitted(omega: Vector3<f64>, noise: f64, seconds: u32) -> Estimate {
@@ -102,7 +102,7 @@ fn what_contradicts_the_fit_comes_before_a_longer_record() {
     let rates = simulate_with(&body, omega, &times, &none, &gyroscope, &mut Random::new(5)).unwrap();
     let e = fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap();
     let steps = e.next_steps();
-    let NextStep::FindCause(Contradiction::LeftOut { is_of_sensor: true, .. }) = steps[0] else {
+    let NextStep::FindCause(Contradiction::LeftOut { origin: Origin::Sensor, .. }) = steps[0] else {
         panic!("{steps:?}: {:?}", e.warnings)
     };
     assert!(

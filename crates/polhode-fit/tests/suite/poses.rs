@@ -495,3 +495,29 @@ fn a_constant_torque_that_is_left_out_is_named() {
     // filter and smoother, which take over where a record is not that of a free body, tell it as torque noise
     assert!(e.warnings.iter().any(|w| matches!(w, Warning::TorqueNoise { .. })), "{:?}", e.warnings);
 }
+
+/// A segment of few attitudes has no motion of its own: it is left out, and the report says so.
+#[test]
+fn a_segment_of_few_attitudes_is_told() {
+    let poses = toss(ASYMMETRIC, 10.0, 30.0, 0.005, 1).poses();
+    let cut = poses.windows(&[(0.0, 25.0), (26.0, 26.5)]).unwrap();
+    assert_eq!(cut.segments()[1].times().len(), 6);
+    let e = fit_poses(&cut, &Settings::default()).unwrap();
+    let short = Warning::ShortSegments { short: 1, segments: 2 };
+    assert!(e.segments == 1 && e.warnings.contains(&short), "{:?}", e.warnings);
+    let whole = fit_poses(&poses, &Settings::default()).unwrap();
+    assert!(!whole.warnings.iter().any(|warning| matches!(warning, Warning::ShortSegments { .. })));
+}
+
+/// Noise of rates has no meaning where there are none.
+#[test]
+fn noise_of_rates_that_are_not_there_is_refused() {
+    let toss = toss(ASYMMETRIC, 10.0, 30.0, 0.005, 1);
+    let settings = Settings::default().with_noise(0.02);
+    let refused = fit_poses(&toss.poses(), &settings);
+    let named = |fault: &PoseFault| matches!(fault, PoseFault::OnlyRates { name } if name.contains("noise"));
+    assert!(matches!(&refused, Err(FitError::Poses(fault)) if named(fault)), "{refused:?}");
+    let rates = toss.rates(|_| UnitQuaternion::identity(), 0.02);
+    let both = Poses::with_rates("both", &toss.times, &toss.measured, &rates).unwrap();
+    assert!(fit_poses(&both, &settings).is_ok());
+}

@@ -2,7 +2,7 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::{inertia::Inertia, num::Random};
-use polhode_fit::{Method, Record, Settings, fit, simulate};
+use polhode_fit::{Disturbances, Gyroscope, Method, Record, Settings, Warning, fit, simulate, simulate_with};
 
 /// Half a sample a second of a body that turns by two radians in between, as of a satellite's beacon: the likelihood on the exact motion.
 #[test]
@@ -36,4 +36,55 @@ fn sparse_telemetry_goes_to_the_likelihood() {
         }
     }
     assert!((0.3..2.5).contains(&(squares / 18.0)), "{squares}");
+}
+
+/// Of a body that turns by two thirds of a radian from one sample to the next.
+fn beacon(gyroscope: &Gyroscope) -> (Vec<f64>, Vec<Vector3<f64>>) {
+    let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+    let times: Vec<f64> = (0..124).map(|i| 0.65 * f64::from(i)).collect();
+    let (omega, none) = (Vector3::new(0.3, 1.0, 0.4), Disturbances::default());
+    let rates = simulate_with(&body, omega, &times, &none, gyroscope, &mut Random::new(8)).unwrap();
+    (times, rates)
+}
+
+/// What the likelihood leaves out is told as by the weak form: samples that stand out, and segments that are too short.
+#[test]
+fn what_is_left_out_of_sparse_rates_is_told() {
+    let gyroscope = Gyroscope::default().with_noise(0.01).with_spikes(0.06).with_spike_size(3.0);
+    let (times, rates) = beacon(&gyroscope);
+    let short = Record::from_samples(&times[..5], &rates[..5]).unwrap();
+    let record = Record::from_samples(&times, &rates).unwrap().join(short);
+    let e = fit(&record, &Settings::default()).unwrap();
+    assert_eq!(e.method, Method::ExactMotion);
+    let outliers = e.warnings.iter().find_map(|warning| match warning {
+        Warning::Outliers { samples } => Some(*samples),
+        _ => None,
+    });
+    let spikes = e.spikes.iter().filter(|spike| spike.segment == 0).count();
+    let left_out = times.len() - e.samples;
+    assert!(left_out > 0 && outliers.unwrap_or(0) + spikes == left_out, "{left_out}: {:?}", e.warnings);
+    let is_of_spikes = |w: &Warning| matches!(w, Warning::Spikes { .. } | Warning::Bursts { .. });
+    assert_eq!(e.warnings.iter().any(is_of_spikes), !e.spikes.is_empty());
+    assert!(e.warnings.contains(&Warning::ShortSegments { short: 1, segments: 2 }), "{:?}", e.warnings);
+}
+
+/// The rounding of readings whose step is given is noise of the likelihood too.
+#[test]
+fn a_step_that_is_given_is_noise_of_sparse_rates() {
+    let (times, rates) = beacon(&Gyroscope::default().with_noise(0.01));
+    let record = Record::from_samples(&times, &rates).unwrap();
+    let plain = fit(&record, &Settings::default()).unwrap();
+    for (settings, noise) in [
+        (Settings::default().with_quantum(0.1), 0.1 / 12.0_f64.sqrt()),
+        (Settings::default().with_quantum(0.1).with_noise(0.02), (0.01_f64 / 12.0 + 4e-4).sqrt()),
+    ] {
+        let told = fit(&record, &settings).unwrap();
+        assert!(plain.method == Method::ExactMotion && told.method == Method::ExactMotion);
+        assert_eq!((plain.quanta, told.quanta), ([0.0; 3], [0.1; 3]));
+        assert!((told.noise_sigma / noise - 1.0).abs() < 1e-6, "{} for {noise}", told.noise_sigma);
+        for k in 0..3 {
+            assert!((told.principal[k] - plain.principal[k]).abs() < 0.1 * plain.sigma_principal[k]);
+            assert!(told.sigma_principal[k] > 2.0 * plain.sigma_principal[k]);
+        }
+    }
 }

@@ -4,7 +4,8 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_fit::{
-    Disturbances, Estimate, Gyroscope, Record, Settings, TorqueModel, TorqueNoise, fit, simulate_with,
+    Disturbances, Estimate, Gyroscope, Record, SensorPriors, Settings, TorqueModel, TorqueNoise, fit,
+    simulate_with,
 };
 
 use crate::measured::{sampled, turned};
@@ -149,5 +150,20 @@ fn a_magnet_in_a_random_direction_changes_the_moments_as_the_report_says() {
             "{k}: {:e} {expected:e}",
             line.principal[k]
         );
+    }
+}
+
+/// An axis that is read later than its time says has a negative delay, for which a reading shows the motion of a later time.
+#[test]
+fn an_axis_that_is_read_late_has_a_negative_delay() {
+    let (times, body) = (sampled(20, 30), Inertia::from_tensor(body()).unwrap());
+    let gyroscope = Gyroscope::default().with_noise(1e-3).with_skew(Vector3::new(0.0, 0.02, -0.01));
+    let none = Disturbances::default();
+    let rates = simulate_with(&body, START, &times, &none, &gyroscope, &mut Random::new(4)).unwrap();
+    let settings = Settings::default().with_sensor(SensorPriors::default().with_skew(0.05));
+    let e = fit(&Record::from_samples(&times, &rates).unwrap(), &settings).unwrap();
+    for (name, delay) in [("skew_y", -0.02), ("skew_z", 0.01)] {
+        let found = e.nuisances.iter().find(|one| one.name == name).unwrap();
+        assert!((found.value - delay).abs() < 0.005 && found.sigma < 0.005, "{name}: {found:?}");
     }
 }

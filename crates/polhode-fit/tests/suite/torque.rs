@@ -411,6 +411,26 @@ fn a_long_burst_parts_its_segment() {
     }
 }
 
+/// A torque that is alike along all axes is told by the angular acceleration that it makes, the mean of the three.
+#[test]
+fn the_density_of_torque_noise_is_that_of_the_angular_acceleration() {
+    let moments = [1.0, 2.0, 2.6];
+    let body = Inertia::from_moments(moments).unwrap();
+    let impulse = 0.05;
+    let truth = impulse * impulse * moments.iter().map(|i| 1.0 / (i * i)).sum::<f64>() / 3.0;
+    let by = Disturbances::default().with_torque_noise(impulse);
+    let gyroscope = Gyroscope::default().with_noise(5e-4);
+    let settings = Settings::default().with_torque(TorqueModel::None);
+    let (times, start) = (sampled(20, 60), Vector3::new(0.6, 1.0, 0.8));
+    for seed in 1..4 {
+        let rates = simulate_with(&body, start, &times, &by, &gyroscope, &mut Random::new(seed)).unwrap();
+        let e = fit(&Record::from_samples(&times, &rates).unwrap(), &settings).unwrap();
+        let found = e.per_segment[0].torque_noise;
+        // some 400 numbers tell it to a tenth
+        assert!((0.7..1.4).contains(&(found / truth)), "{found} for {truth}");
+    }
+}
+
 /// A wheel whose momentum is known gives the tensor its size.
 #[test]
 fn a_wheel_gives_the_absolute_tensor() {

@@ -40,6 +40,8 @@ impl FreeMotion {
     /// The free motion nearest to the attitudes of `table`, of which each component of the rotation vector has the standard deviation
     /// `noise`, rad: least squares, from the start at `guess` (as the first piece of an [`Interpolation`](super::Interpolation)).
     ///
+    /// From a `guess` of another body its attitude and angular velocity at t = 0 are taken: what is found is a motion of `inertia`.
+    ///
     /// Attitudes are taken on from the first ones, twice as many each time, so that the phase never is off by much.
     ///
     /// # Errors
@@ -61,7 +63,8 @@ impl FreeMotion {
         {
             return Err(ThroughError::NotAscending { before: pair[0].0, after: pair[1].0 });
         }
-        let mut fit = Fit { inertia, table, motion: guess.clone(), iterations: 0 };
+        let motion = of_body(inertia, guess).ok_or(ThroughError::NotConverged { attitudes: 3 })?;
+        let mut fit = Fit { table, motion, iterations: 0 };
         let mut count = 3;
         loop {
             let (chi2, covariance) = fit.converge(count)?;
@@ -79,8 +82,16 @@ impl FreeMotion {
     }
 }
 
+/// The motion of the body with `inertia` from the attitude and the angular velocity at which `guess` starts.
+fn of_body(inertia: &Inertia, guess: &FreeMotion) -> Option<FreeMotion> {
+    if guess.body().inertia() == inertia {
+        return Some(guess.clone());
+    }
+    let (start, omega) = (guess.at(0.0).ok()?, guess.omega_at(0.0).ok()?);
+    FreeMotion::from_omega(inertia, start.rotation(), omega).ok()
+}
+
 struct Fit<'a> {
-    inertia: &'a Inertia,
     table: &'a [(f64, UnitQuaternion<f64>)],
     motion: FreeMotion,
     iterations: u32,
@@ -141,7 +152,8 @@ impl Fit<'_> {
         let turn: Vector3<f64> = step.fixed_rows::<3>(0).into_owned();
         let momentum = start.momentum() + step.fixed_rows::<3>(3);
         let state = State { attitude: turn_by(turn.into()) * start.attitude, momentum_body: momentum.into() };
-        let inside: Point<Dd> = self.motion.body().enter(&state).ok()?;
-        Some(FreeMotion::from_point(self.inertia, inside))
+        let body = self.motion.body();
+        let inside: Point<Dd> = body.enter(&state).ok()?;
+        Some(FreeMotion::from_point(body.inertia(), inside))
     }
 }

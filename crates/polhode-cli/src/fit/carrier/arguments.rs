@@ -19,7 +19,7 @@ pub(crate) struct CarrierArguments {
     /// DATA and --object-proof, in this order
     #[arg(long, value_name = "FILE.csv", help_heading = "Carrier", conflicts_with_all = [
         "at_least", "at_most", "body", "trace", "momentum", "twice_energy", "moment", "prior_inertia", "prior_shape",
-        "residuals", "figure",
+        "residuals", "figure", "from", "quaternion", "attitude", "euler", "angle_unit", "attitude_noise",
     ])]
     carrier: Vec<PathBuf>,
     /// Record of carrier and proof body: it gives the size

@@ -72,6 +72,11 @@ fn records(
 ) -> Result<(Result<CarrierRecords, CarrierError>, AsRead), Error> {
     let files = arguments.files(data);
     let given = files.map(|files| !files.is_empty());
+    if !given[1] && !given[3] && arguments.proof_body()?.is_some() {
+        let rule = "no record is of it";
+        let remedy = "give --proof or --object-proof too, or leave it out";
+        return Err(Error::input("--proof-body", "", rule, remedy));
+    }
     let ([mut alone, mut proof, mut object, mut both], read) = reading.records(files, momentum)?;
     let as_read = AsRead(read);
     let each = [

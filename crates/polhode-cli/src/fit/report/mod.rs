@@ -113,6 +113,28 @@ impl Facts {
         Facts::nothing(open, "none: state the direction, which no motion of an axisymmetric body tells")
     }
 
+    pub(super) fn several() -> Self {
+        let open = "the ratios of the moments, and other axes: very different bodies follow the samples nearly as well";
+        Facts::nothing(open, "throw the body with a larger wobble, or record longer")
+    }
+
+    /// A torque whose coefficients are not told; with them `rank` of the five numbers of the tensor are.
+    pub(super) fn untold(names: &[&str], rank: usize) -> Self {
+        let (names, is_whole) = (names.join(", "), rank == 5);
+        let open = match is_whole {
+            true => format!("of the torque: {names}"),
+            false => format!("the tensor together with a torque: {names}"),
+        };
+        let next =
+            "record longer, or with a larger wobble, or throws about other axes; or ask for a simpler torque";
+        Facts { rank: Some(rank).filter(|_| !is_whole), ..Facts::nothing(&open, next) }
+    }
+
+    pub(super) fn untold_sensor() -> Self {
+        let open = "the tensor together with the errors of the sensor that are to be fitted";
+        Facts::nothing(open, "record longer; or fit fewer errors of the sensor, or with smaller deviations")
+    }
+
     pub(super) fn driven() -> Self {
         let open = "the tensor: torques drive the body";
         Facts::nothing(open, "throw the body, or cut out of the record what is free")
@@ -134,14 +156,14 @@ impl Facts {
         &self,
         record: &Record,
         spans: &Spans,
-        (as_read, reason): (&AsRead, &str),
+        (as_read, reason, method): (&AsRead, &str, Method),
         format: Format,
     ) -> String {
         match format {
             Format::Json => pretty(&json!({
                 "shape": null, "principal": null, "axes": null, "covariance": null, "sigma_principal": null,
                 "inertia": null, "inertia_covariance": null, "noise_sigma": null,
-                "samples": record.samples(), "segments": record.segments.len(), "method": Method::WeakForm.words(),
+                "samples": record.samples(), "segments": record.segments.len(), "method": method.words(),
                 "identifiable": false, "rank": self.rank, "null_directions": self.open, "known": self.known,
                 "reason": reason, "next_steps": [self.next],
                 "triangle_slack": null, "active_constraints": [], "chi2_per_dof": null, "warnings": [],

@@ -1,0 +1,213 @@
+//! What a file says is read or refused, and what is asked for is given or refused: nothing is passed over with exit code 0.
+
+use crate::harness::{Scratch, output, refused, run};
+
+const BODY: &str = "--moments 1,2,3";
+const MOTION: &str =
+    "propagate --moments 1,2,3 --omega 0.4,1,-0.3 --attitude 1,0.2,0,0 --until 6 --every 0.1";
+
+/// The motion with those columns under another header.
+fn written(scratch: &Scratch, name: &str, fields: &str, header: &str) -> String {
+    let text = output(&format!("{MOTION} --fields {fields}"));
+    let (_, rows) = text.split_once('\n').unwrap();
+    scratch.file(name, format!("{header}\n{rows}"))
+}
+
+/// The same with each row made of the cells that `of` makes.
+fn made(
+    scratch: &Scratch,
+    name: &str,
+    fields: &str,
+    header: &str,
+    of: impl Fn(&[f64]) -> Vec<f64>,
+) -> String {
+    let text = output(&format!("{MOTION} --fields {fields}"));
+    let row = |line: &str| {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        of(&cells).iter().map(f64::to_string).collect::<Vec<_>>().join(",")
+    };
+    let rows: Vec<String> = text.lines().skip(1).map(row).collect();
+    scratch.file(name, format!("{header}\n{}\n", rows.join("\n")))
+}
+
+const WITH_RATES: &str = "t,q,omega";
+
+#[test]
+fn names_of_quaternions_stand_whatever_their_order_is_said_to_be() {
+    let scratch = Scratch::new("heard-order");
+    let to_xyzw = |row: &[f64]| vec![row[0], row[2], row[3], row[4], row[1], row[5], row[6], row[7]];
+    let header = "t,q_x,q_y,q_z,q_w,omega_body_x,omega_body_y,omega_body_z";
+    let file = made(&scratch, "xyzw.csv", WITH_RATES, header, to_xyzw);
+    for order in ["", "--quaternion xyzw", "--quaternion wxyz"] {
+        let answer = run(&format!("audit {file} {BODY} {order} --format json"));
+        assert_eq!(answer.code, 0, "{order}: {answer:?}");
+        let start = "--omega 0.4,1,-0.3 --attitude 1,0.2,0,0 --until 6 --methods rk8 --steps 0.1";
+        let line = format!("compare {BODY} {start} --trajectory {file} --format csv {order}");
+        let answer = run(&line);
+        let row = answer.out.lines().find(|row| row.contains("xyzw.csv")).unwrap();
+        assert!(answer.code == 0 && row.contains(",ok"), "{order}: {answer:?}");
+    }
+}
+
+#[test]
+fn counts_of_steps_are_no_times() {
+    let scratch = Scratch::new("heard-steps");
+    let frame = |step: u32, q: &str| {
+        format!(
+            "ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n-1 1\n-1 1\n-1 1\n\
+             ITEM: ATOMS id quatw quati quatj quatk\n1 {q}\n"
+        )
+    };
+    let text = frame(0, "1 0 0 0") + &frame(100, "0.8 0.6 0 0") + &frame(200, "0.6 0.8 0 0");
+    let file = scratch.file("dump.lammpstrj", text);
+    refused(&format!("propagate {BODY} --through {file} --every 10"), &["--through", "counts steps"]);
+    let rates = written(&scratch, "rates.csv", "t,omega", "t,wx (rad/s),wy (rad/s),wz (rad/s)");
+    refused(&format!("attitude {rates} --against {file}"), &["--against", "counts steps"]);
+}
+
+#[test]
+fn a_unit_that_has_two_meanings_is_refused() {
+    let scratch = Scratch::new("heard-rps");
+    let file = written(&scratch, "rps.csv", "t,omega", "t,wx (rps),wy (rps),wz (rps)");
+    for line in [format!("attitude {file}"), format!("fit {file}")] {
+        refused(&line, &["rps"]);
+    }
+}
+
+#[test]
+fn mirrors_are_no_attitudes() {
+    let scratch = Scratch::new("heard-mirror");
+    let mirrored = |row: &[f64]| {
+        let (w, [x, y, z]) = (row[1], [row[2], row[3], row[4]]);
+        vec![
+            row[0],
+            1.0 - 2.0 * (y * y + z * z),
+            2.0 * (x * y - w * z),
+            -2.0 * (x * z + w * y),
+            2.0 * (x * y + w * z),
+            1.0 - 2.0 * (x * x + z * z),
+            -2.0 * (y * z - w * x),
+            2.0 * (x * z - w * y),
+            2.0 * (y * z + w * x),
+            -1.0 + 2.0 * (x * x + y * y),
+        ]
+    };
+    let header = "t,r11,r12,r13,r21,r22,r23,r31,r32,r33";
+    let file = made(&scratch, "mirror.csv", "t,q", header, mirrored);
+    let rates = written(&scratch, "rates.csv", "t,omega", "t,wx (rad/s),wy (rad/s),wz (rad/s)");
+    refused(&format!("attitude {rates} --against {file}"), &["mirror.csv", "it mirrors"]);
+    let line = format!("compare {BODY} --omega 0.4,1,-0.3 --until 6 --methods rk4 --steps 0.1");
+    refused(&format!("{line} --trajectory {file}"), &["mirror.csv", "it mirrors"]);
+}
+
+#[test]
+fn units_of_a_header_are_all_read() {
+    let scratch = Scratch::new("heard-units");
+    let rates = "omega_body_x (deg/s),omega_body_y (rad/s),omega_body_z (rad/s)";
+    let mixed = written(&scratch, "mixed.csv", WITH_RATES, &format!("t,q_w,q_x,q_y,q_z,{rates}"));
+    refused(&format!("audit {mixed} {BODY}"), &["omega_body_y", "one unit"]);
+    let degrees = |row: &[f64]| {
+        let mut row = row.to_vec();
+        row[1..].iter_mut().for_each(|angle| *angle = angle.to_degrees());
+        row
+    };
+    let euler = "t,euler --euler zxz";
+    let angles = made(&scratch, "angles.csv", euler, "t,phi (rad),theta (rad),psi (rad)", degrees);
+    assert_eq!(run(&format!("audit {angles} {BODY} --euler zxz")).code, 1);
+    refused(&format!("audit {angles} {BODY} --euler zxz --angle-unit deg"), &["--angle-unit", "rad"]);
+    let below = made(&scratch, "below.csv", euler, "t,phi,theta,psi\ns,rad,rad,rad", degrees);
+    assert_eq!(run(&format!("audit {below} {BODY} --euler zxz")).code, 1);
+    let right = made(&scratch, "right.csv", euler, "t,phi,theta,psi\ns,deg,deg,deg", degrees);
+    assert_eq!(run(&format!("audit {right} {BODY} --euler zxz")).code, 0);
+    let two = made(&scratch, "two.csv", euler, "t,phi (deg),theta (rad),psi (rad)", degrees);
+    refused(&format!("audit {two} {BODY} --euler zxz"), &["theta", "one unit"]);
+    let momenta = |unit: &str| {
+        let header = ["x", "y", "z"].map(|axis| format!("Lbody_{axis} ({unit})")).join(",");
+        made(&scratch, "momenta.csv", WITH_RATES, &format!("t,q_w,q_x,q_y,q_z,{header}"), |row| {
+            let mut row = row.to_vec();
+            row[5..].iter_mut().zip([1.0, 2.0, 3.0]).for_each(|(w, moment)| *w *= moment);
+            row
+        })
+    };
+    assert_eq!(run(&format!("audit {} {BODY}", momenta("N m s"))).code, 0);
+    refused(&format!("audit {} {BODY}", momenta("g cm^2/s")), &["Lbody_x", "g cm^2/s"]);
+}
+
+#[test]
+fn what_a_fit_cannot_use_or_write_is_refused() {
+    let scratch = Scratch::new("heard-fit");
+    let rates = written(&scratch, "rates.csv", "t,omega", "t,wx (rad/s),wy (rad/s),wz (rad/s)");
+    let poses = written(&scratch, "poses.csv", "t,q", "t,q_w,q_x,q_y,q_z");
+    refused(&format!("fit {poses} --axes x,-y,z"), &["--axes", "attitudes are fitted"]);
+    refused(&format!("fit {rates} --attitude-noise 0.1"), &["--attitude-noise", "rates are fitted"]);
+    let body = scratch.file("body.json", r#"{"inertia":[[1,0,0],[0,2,0],[0,0,2.5]]}"#);
+    for flag in ["--report a.html", "--residuals a.csv", "--figure a.svg"] {
+        let line = format!("fit {rates} --calibrate-wheel 0,0,1 --body {body} {flag}");
+        refused(&line, &["--calibrate-wheel", "no page"]);
+    }
+}
+
+#[test]
+fn what_other_commands_cannot_use_is_refused_or_said() {
+    let scratch = Scratch::new("heard-others");
+    let poses = written(&scratch, "poses.csv", "t,q", "t,q_w,q_x,q_y,q_z");
+    for flag in ["--frame ecliptic", "--periods 1h", "--times-column t"] {
+        let answer = run(&format!("propagate {BODY} --through {poses} --every 0.5 {flag}"));
+        assert_eq!(answer.code, 2, "{flag}: {answer:?}");
+    }
+    refused(&format!("{MOTION} --fields t,jd"), &["--fields", "jd", "--epoch"]);
+    let wheels = r#"{"name":"a","mass":10,"center_of_mass":[0,0,0],"inertia":[[1,0,0],[0,2,0],[0,0,2.5]],
+        "wheels":[{"axis":[0,0,1],"inertia":0.05,"speed":300}]}"#;
+    let body = scratch.file("wheels.json", wheels);
+    let answer = run(&format!("inertia json {body}"));
+    assert!(answer.code == 0 && answer.err.contains("wheels"), "{answer:?}");
+    let plain = scratch.file("plain.json", r#"{"mass":10,"inertia":[[1,0,0],[0,2,0],[0,0,2.5]]}"#);
+    refused(&format!("inertia json {plain} --about 0,0,1 --format urdf"), &["--about"]);
+    // its rows end before those of the methods
+    let text = std::fs::read_to_string(&poses).unwrap();
+    let few: Vec<&str> = text.lines().take(12).collect();
+    let short = scratch.file("short.csv", few.join("\n") + "\n");
+    let line =
+        format!("compare {BODY} --omega 0.4,1,-0.3 --attitude 1,0.2,0,0 --until 6 --methods rk8 --steps 0.1");
+    let answer = run(&format!("{line} --trajectory {short}"));
+    assert!(answer.code == 0 && answer.err.contains("its last row is at t = 1 s"), "{answer:?}");
+    let line = line.replace("--methods rk8", "--methods rk8,dissipating:1e-3");
+    refused(&line, &["dissipating", "inner friction"]);
+}
+
+#[test]
+fn a_second_time_that_contradicts_the_first_is_named() {
+    let scratch = Scratch::new("heard-time");
+    let header = "t,time_ms,q_w,q_x,q_y,q_z,omega_body_x,omega_body_y,omega_body_z";
+    let file = |name: &str, shift: f64| {
+        made(&scratch, name, WITH_RATES, header, |row| {
+            let late = if row[0] > 3.0 { shift } else { 0.0 };
+            [&[row[0], 1000.0 * row[0] + late], &row[1..]].concat()
+        })
+    };
+    let told = |file: &str| run(&format!("audit {file} {BODY} --format json")).out;
+    assert!(!told(&file("same.csv", 0.0)).contains("does not go with"));
+    assert!(told(&file("jump.csv", 50.0)).contains("is a time too, and does not go with"));
+}
+
+#[test]
+fn a_clock_in_milliseconds_is_named() {
+    let scratch = Scratch::new("heard-clock");
+    let header = "t,q_w,q_x,q_y,q_z,omega_body_x,omega_body_y,omega_body_z";
+    let milliseconds = |row: &[f64]| [&[1000.0 * row[0]], &row[1..]].concat();
+    let file = made(&scratch, "ms.csv", WITH_RATES, header, milliseconds);
+    let answer = run(&format!("audit {file} {BODY}"));
+    assert_eq!(answer.code, 1, "{answer:?}");
+    assert!((answer.out + &answer.err).contains("--time-unit ms"));
+    assert_eq!(run(&format!("audit {file} {BODY} --time-unit ms")).code, 0);
+}
+
+#[test]
+fn the_unit_of_a_simulated_start_is_the_one_that_is_named() {
+    let line = "simulate --moments 1,2,2.6 --until 2 --every 0.1";
+    let plain = output(&format!("{line} --omega 0.5,1,0.25"));
+    let turned = output(&format!("{line} --omega 5,10,2.5 --rate-unit deg/s"));
+    assert_ne!(plain, turned);
+    let first = |text: &str| text.lines().nth(1).unwrap().split(',').nth(1).unwrap().parse::<f64>().unwrap();
+    assert!((first(&turned) / 5_f64.to_radians() - 1.0).abs() < 1e-12, "{turned}");
+}
