@@ -280,6 +280,7 @@ fn random(context: &Context, report: &mut Report) {
         vec![
             Column::new("quantity", "", "attitude in rad, angular velocity relative"),
             Column::new("error", "", "largest over all bodies").digits(2),
+            Column::new("bodies", "", "random bodies, one start of each").hidden(),
             Column::new("I1", "", "moment of the worst case").hidden(),
             Column::new("I2", "", "moment of the worst case").hidden(),
             Column::new("I3", "", "moment of the worst case").hidden(),
@@ -293,7 +294,7 @@ fn random(context: &Context, report: &mut Report) {
         [("attitude", worst.0.attitude, worst.1), ("omega", worst.0.omega, worst.2)]
     {
         let Some((i, w, t)) = case else { continue };
-        table.push(row![quantity, error, i[0], i[1], i[2], w[0], w[1], w[2], t]);
+        table.push(row![quantity, error, worst.0.cases, i[0], i[1], i[2], w[0], w[1], w[2], t]);
         if error.is_nan() || error > RANDOM_PROMISE {
             report
                 .failures

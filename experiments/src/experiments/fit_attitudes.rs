@@ -108,6 +108,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             differenced.over_bound(),
             Interval::new(differenced.covered, differenced.answered).map(|c| rounded(c.share)),
             made - differenced.answered,
+            made,
+            seconds as u64,
         ]);
         if trials >= TELLING {
             failures.extend(
@@ -142,6 +144,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         pooled_differenced.over_bound(),
         Interval::new(pooled_differenced.covered, pooled_differenced.answered).map(|c| rounded(c.share)),
         all.0 - pooled_differenced.answered,
+        all.0,
+        seconds as u64,
     ]);
     let conclusion = match (
         pooled.over_bound(),
@@ -330,5 +334,7 @@ fn columns() -> Vec<Column> {
         .heading("differences"),
         Column::new("differenced_coverage", "", "their coverage").heading("coverage"),
         Column::new("differenced_refused", "", "records that they give no answer to").heading("refused"),
+        Column::new("records", "", "records").hidden(),
+        Column::new("seconds", "s", "length of a record").hidden(),
     ]
 }

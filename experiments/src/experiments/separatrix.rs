@@ -95,6 +95,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             low.time,
             median.time,
             high.time,
+            horizon,
             median.flips,
         ]);
         if body == BODIES[0] {
@@ -182,6 +183,7 @@ fn columns() -> Vec<Column> {
         .digits(3),
         Column::new("time_median", "s", "the same: half of the starts").heading("median").digits(3),
         Column::new("time_p90", "s", "the same: 90 % of the starts").heading("90 %").digits(3),
+        Column::new("end", "s", "time at which the runs end").hidden(),
         Column::new("flips_median", "", "exact flips until the median time").heading("flips"),
     ]
 }

@@ -63,6 +63,8 @@ pub(super) fn run(context: &Context, report: &mut Report) -> Result<(), Error> {
             Column::new("low", "rad", "what one in ten stays below").heading("10 %").digits(2),
             Column::new("high", "rad", "what one in ten exceeds").heading("90 %").digits(2),
             Column::new("lost", "", "starts whose attitude is more than 1 rad off, or whose run failed"),
+            Column::new("starts", "", "starts").hidden(),
+            Column::new("span", "s", "time at which the attitudes are compared").hidden(),
         ],
     );
     let methods = methods()?;
@@ -86,7 +88,18 @@ pub(super) fn run(context: &Context, report: &mut Report) -> Result<(), Error> {
         let steps = (span / h) as u64;
         let solved = method.claims(Problem::Free).is_some_and(|claims| claims.cost.solves > 0);
         let corrections = solved.then(|| rounded(corrections(*h, starts[0].momentum(), 1000)));
-        table.push(row![method.name(), *h, steps, corrections, share(0.5), share(0.1), share(0.9), lost]);
+        table.push(row![
+            method.name(),
+            *h,
+            steps,
+            corrections,
+            share(0.5),
+            share(0.1),
+            share(0.9),
+            lost,
+            starts.len() as u64,
+            span
+        ]);
     }
     report.checks += table.rows().len() as u64;
     report.tables.push(table);

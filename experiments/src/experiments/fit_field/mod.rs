@@ -59,6 +59,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             tally.outside,
             tally.by_lines,
             tally.silent,
+            trials,
         ]);
         timing.push(row![case.name, noise, tally.seconds(0.5), tally.seconds(1.0)]);
         failures.extend(tally.demands(case, noise));
@@ -112,6 +113,7 @@ fn columns() -> Vec<Column> {
         Column::new("by_lines", "", "of these, without a warning, those that the report's lines of systematic errors cover at the size that the sensor's error has")
             .heading("by lines"),
         Column::new("silent", "", "of these, those with neither"),
+        Column::new("records", "", "records").hidden(),
     ]
 }
 

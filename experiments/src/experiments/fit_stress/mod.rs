@@ -158,6 +158,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             tally.outside,
             tally.by_lines,
             tally.silent,
+            trials,
         ]);
         let mut say = |what: String| failures.push(format!("{}: {what}", case.name));
         if tally.silent > 0 && case.model != Model::Missing {
@@ -203,5 +204,6 @@ fn columns() -> Vec<Column> {
         Column::new("by_lines", "", "of these, without a warning, those that the report's lines of systematic errors cover at the size that the error has, or whose line of left-handed axes is the true body")
             .heading("by lines"),
         Column::new("silent", "", "of these, those with neither"),
+        Column::new("records", "", "records").hidden(),
     ]
 }

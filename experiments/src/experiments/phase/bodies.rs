@@ -98,6 +98,8 @@ pub(super) fn add(context: &Context, report: &mut Report) -> Result<(), Error> {
                 quantile(1.0),
                 count(|outcome| matches!(outcome, Outcome::Rounding)),
                 count(|outcome| matches!(outcome, Outcome::Refused)),
+                TURN,
+                PERIODS,
             ]);
         }
     }
@@ -156,5 +158,7 @@ fn columns() -> Vec<Column> {
         Column::new("largest", "", "its largest value").digits(2),
         Column::new("rounding", "", "bodies whose prediction is less than 100 times what rounding adds"),
         Column::new("refused", "", "bodies without a prediction, by the function itself"),
+        Column::new("turn", "rad", "turn of the body over which the growth is measured, at least").hidden(),
+        Column::new("periods", "", "periods of the momentum over which it is measured, at least").hidden(),
     ]
 }

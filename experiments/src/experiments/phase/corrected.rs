@@ -76,6 +76,8 @@ pub(super) fn add(context: &Context, report: &mut Report) -> Result<(), Error> {
             slope(over(last, first), late / early),
             lost,
             refused,
+            bodies,
+            COST,
         ]);
     }
     report.tables.push(table);
@@ -128,5 +130,7 @@ fn columns() -> Vec<Column> {
         Column::new("growth", "", "slope of the error over time between the two ends").digits(2),
         Column::new("lost", "", "bodies whose attitude is lost at the end of the longer run"),
         Column::new("refused", "", "runs of bodies whose phase error is not predicted"),
+        Column::new("bodies", "", "random bodies").hidden(),
+        Column::new("cost", "1/rad", "evaluations for each radian that the body turns").hidden(),
     ]
 }

@@ -154,6 +154,7 @@ fn columns() -> Vec<Column> {
         Column::new("method", "", "name in the catalogue of methods, with the axes of splittings"),
         Column::new("order", "", "order of the method"),
         Column::new("h", "s", "step").latex("$h$").digits(2),
+        Column::new("steps", "", "steps of the run").hidden(),
         Column::new("time", "s", "time of the last row of the run").hidden(),
         Column::new("shift_closed", "", "growth of the shift per second, leading term in closed form")
             .hidden(),
@@ -233,6 +234,7 @@ fn examine(named: &NamedBody, name: &str, steps: u64, panels: u32) -> Result<Fou
         &*name,
         u64::from(order),
         h,
+        steps,
         last.elapsed.hi(),
         closed.map(|rates| rates.shift),
         steps_alone.shift,
