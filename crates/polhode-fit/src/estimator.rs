@@ -4,7 +4,7 @@ use crate::solve::completed::Completed;
 use crate::thresholds::noise::{LEAST, MOST};
 use crate::verdict::judgement::{Case, Supported, Verdict};
 use crate::verdict::prior::{check_agreement, with_prior};
-use nalgebra::Vector3;
+use nalgebra::{DMatrix, DVector, Vector3};
 use polhode::record::{Record, Spike};
 
 use crate::columns::column::Column;
@@ -20,14 +20,14 @@ use crate::models::weighed::spread;
 use crate::physical::coordinates::{Form, tensor};
 use crate::physical::failure::SolverFailure;
 use crate::physical::nearest::nearest;
-use crate::report::differing::differing;
+use crate::report::differing::{Differing, differing};
 use crate::report::estimate::{Estimate, Method};
 use crate::report::facts::Facts;
 use crate::report::mirror::reversed;
 use crate::report::nuisance::Agreement;
 use crate::report::parts::scatter;
 use crate::report::segments::{Summary, summaries};
-use crate::report::sensor::{ROTOR, suspect};
+use crate::report::sensor::{ROTOR, Suspect, suspect};
 use crate::report::systematic::errors;
 use crate::report::warnings::{has_zero_inputs, of_record};
 use crate::settings::Settings;
@@ -36,7 +36,7 @@ use crate::settings::torque::{TorqueModel, TorqueNoise};
 use crate::signal::noise;
 use crate::signal::normalised::{Normalised, normalised};
 use crate::signal::stretch::Stretch;
-use crate::solve::joint::Joint;
+use crate::solve::joint::{Joint, factor};
 use crate::solve::ladder::{Demand, climb};
 use crate::solve::radius::Failure;
 use crate::solve::rounds::Noise;
@@ -97,8 +97,8 @@ pub(crate) struct Drawn {
     pub(crate) weak: WeakEstimate,
     /// Standard deviation of the noise with what it does not explain.
     pub(crate) deviation: f64,
-    /// What the choice of a torque adds to the covariance of the tensor.
-    pub(crate) spread: Form,
+    /// M of the M Mᵀ that is added to the covariance by the noise, of all columns and the tensor.
+    pub(crate) beside: DMatrix<f64>,
     /// Unit of the rates, rad/s.
     pub(crate) rms: f64,
     /// Unit of the column of wheel momenta and torques, kg m².
@@ -283,8 +283,35 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
     if input.is_some() && estimate.method == Method::WeakForm {
         check_inputs(&chosen.weak, &stretches, variance)?;
     }
-    let drawn = Drawn { weak: chosen.weak, deviation, spread, rms, input };
+    let beside = beside(&chosen.weak, &spread, suspected.as_ref(), differing.as_ref());
+    let drawn = Drawn { weak: chosen.weak, deviation, beside, rms, input };
     Ok(Fitted { estimate, drawn: Some(drawn) })
+}
+
+/// By what all columns and the tensor of an estimate may be off beside their noise, side by side, one deviation each: the choice of a torque,
+/// what would explain the record better, and how far its parts differ.
+fn beside(
+    weak: &WeakEstimate,
+    spread: &Form,
+    suspected: Option<&Suspect>,
+    differing: Option<&Differing>,
+) -> DMatrix<f64> {
+    let count = weak.columns.len();
+    let of_choice = factor(spread);
+    let choice = (0..5).map(|e| {
+        DVector::from_fn(count + 5, |k, _| if k < count { 0.0 } else { of_choice[(k - count, e)] })
+    });
+    let reached = suspected.and_then(|found| found.reached.as_ref()).map(|to| {
+        let steps = DVector::from_column_slice((to.x - weak.at.x).as_slice());
+        DVector::from_fn(count + 5, |k, _| match k.checked_sub(count) {
+            None => to.c[k] - weak.at.c[k],
+            Some(of_tensor) => steps[of_tensor],
+        })
+    });
+    let parts = differing.into_iter().flat_map(Differing::all).cloned();
+    let moves: Vec<DVector<f64>> =
+        choice.chain(reached).chain(parts).filter(|m| m.iter().any(|v| *v != 0.0)).collect();
+    DMatrix::from_fn(count + 5, moves.len(), |k, e| moves[e][k])
 }
 
 /// Why there is no weak estimate, in the words of the record.

@@ -12,8 +12,9 @@ use crate::carrier::records::Attached;
 use crate::carrier::start::{Alone, Start, start};
 use crate::carrier::system::{Part, System};
 use crate::carrier::told::Told;
+use crate::columns::effect::Class;
 use crate::columns::sets::sensor_columns;
-use crate::estimator::fitted;
+use crate::estimator::{Drawn, fitted};
 use crate::physical::coordinates::{ENTRIES, coordinates, symmetric};
 use crate::physical::nearest::Normal;
 use crate::settings::Settings;
@@ -35,6 +36,11 @@ fn proof() -> Matrix3<f64> {
 
 /// A record with a wheel, and what it tells beside offsets of the sensor.
 fn told(tensor: Matrix3<f64>, settings: &Settings, seed: u64) -> Told {
+    Told::new(&drawn(tensor, settings, seed), &[]).unwrap()
+}
+
+/// What its estimate was drawn from.
+fn drawn(tensor: Matrix3<f64>, settings: &Settings, seed: u64) -> Drawn {
     let times: Vec<f64> = (0..400).map(|k| 0.025 * f64::from(k)).collect();
     let wheel = Vector3::new(0.004, -0.002, 0.01);
     let acting = Disturbances::default().with_wheel(wheel).with_relative_drag(0.01);
@@ -44,7 +50,30 @@ fn told(tensor: Matrix3<f64>, settings: &Settings, seed: u64) -> Told {
     let mut record = Record::default();
     let momenta = vec![wheel; times.len()];
     record.segments.push(Segment::new("tumble", times, rates).unwrap().with_wheel(momenta).unwrap());
-    Told::new(&fitted(&record, settings).unwrap().drawn.unwrap(), &[]).unwrap()
+    fitted(&record, settings).unwrap().drawn.unwrap()
+}
+
+/// By what an estimate may be off beside its noise, its record may be off among others.
+#[test]
+fn what_widens_an_estimate_widens_what_its_record_tells() {
+    let mut drawn = drawn(carrier(), &Settings::default().with_torque(TorqueModel::Drag), 1);
+    let size = drawn.weak.columns.len() + 5;
+    let covariance = |drawn: &Drawn| {
+        let inverse = Told::new(drawn, &[]).unwrap().root.try_inverse().unwrap();
+        &inverse * inverse.transpose()
+    };
+    drawn.beside = DMatrix::zeros(size, 0);
+    let before = covariance(&drawn);
+    // of torques nothing, which are at their best for the rest
+    let off = DMatrix::from_fn(size, 1, |k, _| if k + 5 < size { 0.3 } else { 1e-3 * (k + 6 - size) as f64 });
+    drawn.beside = off.clone();
+    let of_input = drawn.weak.columns.iter().position(|column| column.class() == Class::Input).unwrap();
+    let input = off[(of_input, 0)] / drawn.input.unwrap();
+    let readings = std::iter::once(input).chain(off.column(0).iter().skip(size - 5).copied());
+    let expected = DVector::from_iterator(6, readings);
+    let more = covariance(&drawn) - before;
+    let expected = &expected * expected.transpose();
+    assert!((&more - &expected).amax() < 1e-9 * expected.amax(), "{more} {expected}");
 }
 
 /// Readings, their slopes and the linear equations are those of differences; residuals of priors count too.

@@ -5,9 +5,7 @@ use nalgebra::{DMatrix, DVector};
 use crate::columns::column::Column;
 use crate::columns::effect::Class;
 use crate::estimator::Drawn;
-use crate::physical::coordinates::Form;
 use crate::physical::nearest::Normal;
-use crate::solve::joint::factor;
 use crate::solve::stacked::Stacked;
 use crate::solve::triangle::Triangle;
 
@@ -22,7 +20,7 @@ pub(super) struct Told {
 
 /// How the drag of a record follows from the readings.
 struct Drags {
-    /// Triangle of all torques of the record, and of what the choice of one adds; how they depend on the readings, and their right-hand side.
+    /// Triangle of all torques of the record, and of what is added to the covariance by its noise; how they depend on the readings, and their right-hand side.
     own: DMatrix<f64>,
     shared: DMatrix<f64>,
     right: DVector<f64>,
@@ -33,7 +31,7 @@ struct Drags {
 impl Told {
     /// With the columns `held` at zero: drag that takes no energy.
     pub(super) fn new(drawn: &Drawn, held: &[usize]) -> Option<Told> {
-        let Drawn { weak, deviation, spread, rms, input } = drawn;
+        let Drawn { weak, deviation, beside, rms, input } = drawn;
         let origin = &weak.stacked.as_ref()?.origin;
         // priors of what records share would count once for each
         let columns: Vec<Column> = weak.columns.iter().map(|column| column.with_prior(None)).collect();
@@ -47,14 +45,13 @@ impl Told {
         let inputs = of_class(|class| class == Class::Input);
         let mut own = of_class(|class| !matches!(class, Class::Sensor | Class::Input));
         own.retain(|k| !held.contains(k));
-        // x of the record is off by F e, e standard normal, F Fᵀ being what the choice of a torque adds
-        let wider = if *spread == Form::zeros() { 0 } else { 5 };
-        let (more, first) = (factor(spread), columns.len());
+        // all of the record is off by M e, e standard normal, M Mᵀ being what is added to the covariance by its noise
+        let (wider, first) = (beside.ncols(), columns.len());
         let width = own.len() + wider + shared.len() + inputs.len() + 6;
         let mut all = Triangle::new(width);
         for (row, right) in triangle.row_iter().zip(&right) {
-            let of_shape = |e: usize| (0..5).map(|k| row[first + k] * more[(k, e)]).sum::<f64>();
-            let each = own.iter().map(|&k| row[k]).chain((0..wider).map(of_shape));
+            let off = |e: usize| row.iter().zip(&beside.column(e)).map(|(a, b)| a * b).sum::<f64>();
+            let each = own.iter().map(|&k| row[k]).chain((0..wider).map(off));
             let each = each.chain(shared.iter().map(|&k| row[k] / columns[k].label().factor(*rms)));
             let each = each.chain(inputs.iter().map(|&k| row[k] * input.unwrap_or(1.0)));
             all.push(each.chain((0..5).map(|k| row[first + k])).chain([*right]));

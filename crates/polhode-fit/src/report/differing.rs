@@ -97,6 +97,11 @@ impl Differing {
         self.added.iter().map(|added| added[column] * added[column]).sum()
     }
 
+    /// The displacements of all columns and the tensor.
+    pub(crate) fn all(&self) -> &[DVector<f64>] {
+        &self.added
+    }
+
     /// The displacements of some columns and the tensor, side by side.
     pub(crate) fn of(&self, kept: &[usize]) -> DMatrix<f64> {
         let size = self.added.first().map_or(0, DVector::len);

@@ -147,9 +147,9 @@ pub struct Estimate {
     pub active_constraints: Vec<ActiveConstraint>,
     /// Residuals of the conditions of optimality.
     pub certificate: Certificate,
-    /// Trend of |J ω|; of a likelihood on the exact motion that of drag, by one step of least squares.
+    /// Trend of |J ω|; `None` where wheels or known torques act; of a likelihood on the exact motion that of drag, by one step of least squares.
     pub momentum_trend: Option<InvariantTrend>,
-    /// Trend of 2T = ω·J ω; `None` of a likelihood on the exact motion.
+    /// Trend of 2T = ω·J ω; `None` where wheels or known torques act, and of a likelihood on the exact motion.
     pub energy_trend: Option<InvariantTrend>,
     /// Correlation of neighbouring residuals.
     pub whiteness: Whiteness,

@@ -6,7 +6,7 @@ use polhode::inertia::Inertia;
 use polhode::record::{Record, Spike};
 
 use crate::bound::motions::Motions;
-use crate::columns::column::Unknowns;
+use crate::columns::column::{Unknowns, terms_of_all};
 use crate::columns::effect::Class;
 use crate::error::FitError;
 use crate::models::equations::Equations;
@@ -101,15 +101,15 @@ impl Facts<'_> {
         let at = self.joint.unknowns(&nearest.others, nearest.x);
         let (inertia, inertia_covariance) =
             self.absolute(&j, &covariance, &together, motions.as_ref(), &at)?;
-        let part = |k| weak.parts.iter().find(|part| part.stretch == k);
-        let torque_noise = |k| {
-            let levels = part(k).map_or(Levels::WHITE, |part| part.levels);
-            torque_shape(levels.shape, &j) * (levels.torque * self.variance)
-        };
         let excess = self.variance * self.misfit.max(1.0);
-        let (momentum, energy) = trends(self.stretches, &j, excess, torque_noise);
-        let per_second =
-            |d: InvariantTrend| InvariantTrend { rate: d.rate * self.rms, sigma: d.sigma * self.rms };
+        let terms = terms_of_all(&weak.columns, &at);
+        let torque_noise = |stretch| self.torque_noise(stretch, &j);
+        let (momentum, energy) = trends(self.stretches, |w| terms.rate(w), &j, excess, torque_noise);
+        // wheels and torques change both
+        let per_second = |d: InvariantTrend| {
+            let (rate, sigma) = (d.rate * self.rms, d.sigma * self.rms);
+            self.input.is_none().then_some(InvariantTrend { rate, sigma })
+        };
         let residuals = self.residuals(&at);
         let (torques, sensor) = self.nuisances(&at, &held);
         let pull = nearest.pull;
@@ -145,8 +145,8 @@ impl Facts<'_> {
             triangle_slack: (2.0 * (LARGEST_SHARE - moments[2])).max(0.0),
             active_constraints: nearest.active.into_iter().map(|c| self.in_seconds(c)).collect(),
             certificate: nearest.certificate,
-            momentum_trend: Some(per_second(momentum)),
-            energy_trend: Some(per_second(energy)),
+            momentum_trend: per_second(momentum),
+            energy_trend: per_second(energy),
             whiteness: Whiteness::new(residuals.iter().map(|r| r.values.as_flattened())),
             torque: torques,
             models: models(&self.chosen.models, self.chosen.model, motion),
@@ -169,6 +169,13 @@ impl Facts<'_> {
         let grounds = Grounds { size, ..self.grounds(open, left) };
         estimate.warnings = warnings(&estimate, &grounds);
         Ok(estimate)
+    }
+
+    /// Density of the torque noise of a stretch.
+    fn torque_noise(&self, stretch: usize, j: &Matrix3<f64>) -> Matrix3<f64> {
+        let part = self.chosen.weak.parts.iter().find(|part| part.stretch == stretch);
+        let levels = part.map_or(Levels::WHITE, |part| part.levels);
+        torque_shape(levels.shape, j) * (levels.torque * self.variance)
     }
 
     /// By how much the variance of the noise is enlarged: what it does not explain, and how far parts of the record contradict each other.
@@ -229,6 +236,7 @@ impl Facts<'_> {
         check_constant(known, &self.chosen.weak.columns)?;
         let noise = Noise { variance: self.variance, is_in_rates: true };
         let scale = scale_of(known, self.stretches, self.rms, j, noise);
+        let scale = scale.walking(self.stretches, self.rms, |stretch| self.torque_noise(stretch, j));
         let excess = self.excess();
         let (inertia, covariance) = scale.sized(known, prior.as_ref(), j, covariance, excess, motions)?;
         Ok((Some(inertia), Some(covariance)))

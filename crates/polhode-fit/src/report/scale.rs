@@ -5,7 +5,7 @@ use crate::physical::failure::SolverFailure;
 use crate::physical::prior::Told;
 use crate::settings::known::Known;
 use crate::thresholds::noise::SURE;
-use nalgebra::{Matrix3, SMatrix, SVector};
+use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use polhode::inertia::Inertia;
 
 use crate::bound::motions::Motions;
@@ -59,14 +59,14 @@ pub(crate) fn scale_of(
             Scale { trace, slope: pair(&n, &n) * (-trace / share), mean: None }
         }
         Known::TwiceEnergy(value) => {
-            let mean = Mean::new(stretches, *j, basis, noise);
+            let mean = Mean::new(stretches, *j, basis, noise, Matrix3::identity());
             // one by one, so that no square of a rate underflows
             let trace = value / rms / rms / mean.value;
             mean.scale(trace, 1.0)
         }
         Known::Momentum(value) => {
             let change = |k| j * basis(k) + basis(k) * j;
-            let mean = Mean::new(stretches, j * j, change, noise);
+            let mean = Mean::new(stretches, j * j, change, noise, *j);
             let trace = value / rms / mean.value.sqrt();
             mean.scale(trace, 0.5)
         }
@@ -82,6 +82,10 @@ struct Mean {
     /// Of the mean at a given shape.
     variance: f64,
     samples: f64,
+    /// J⁻¹ M.
+    lever: Matrix3<f64>,
+    /// Variance of what torque noise makes of the mean from its value at the start.
+    walk: f64,
 }
 
 impl Mean {
@@ -92,6 +96,7 @@ impl Mean {
         m: Matrix3<f64>,
         change: impl Fn(usize) -> Matrix3<f64>,
         noise: Noise,
+        lever: Matrix3<f64>,
     ) -> Mean {
         let variance = noise.variance;
         let (mut scatter, mut samples) = (Matrix3::zeros(), 0.0);
@@ -103,7 +108,8 @@ impl Mean {
         let scatter = scatter / samples - Matrix3::identity() * bias;
         let of_one = 4.0 * scatter.dot(&(m * m)).max(0.0) + 2.0 * variance * m.norm_squared();
         let slope = Coordinates::from_fn(|k, _| scatter.dot(&change(k)));
-        Mean { m, value: scatter.dot(&m), slope, variance: variance * of_one / samples, samples }
+        let (value, variance) = (scatter.dot(&m), variance * of_one / samples);
+        Mean { m, value, slope, variance, samples, lever, walk: 0.0 }
     }
 
     /// The scale from a trace that goes with the inverse `power` of the mean.
@@ -123,6 +129,37 @@ pub(crate) struct Scale {
 }
 
 impl Scale {
+    /// With torque noise, of which `torque` is the density in each stretch by its place: what is known is known at the start of each segment, and
+    /// has walked until a later sample. A torque τ changes ω·M ω by 2 ω·M J⁻¹ τ a unit of time.
+    pub(crate) fn walking(
+        mut self,
+        stretches: &[Stretch],
+        rms: f64,
+        torque: impl Fn(usize) -> Matrix3<f64>,
+    ) -> Scale {
+        let Some((mean, _)) = &mut self.mean else { return self };
+        let mut densities = (0..stretches.len()).map(torque);
+        for segment in stretches.chunk_by(|a, b| a.segment == b.segment) {
+            let mut later = segment.iter().map(|s| s.times.len()).sum::<usize>() as f64;
+            let mut before = f64::INFINITY;
+            for (s, density) in segment.iter().zip(&mut densities) {
+                let growth = |w: &Vector3<f64>| {
+                    let g = mean.lever * w;
+                    4.0 * g.dot(&(density * g))
+                };
+                let growth = s.rates.iter().map(growth).sum::<f64>() / s.rates.len() as f64;
+                for t in &s.times {
+                    // what the walk gains from one sample to the next stays in all later ones
+                    let now = s.start * rms + t;
+                    mean.walk += later * later * growth * (now - before).max(0.0);
+                    (before, later) = (now, later - 1.0);
+                }
+            }
+        }
+        mean.walk /= mean.samples * mean.samples;
+        self
+    }
+
     /// The absolute tensor of shape `j` and the covariance of its entries; `covariance` is that of the coordinates. A prior tensor must have
     /// this size, where it has one.
     pub(crate) fn sized(
@@ -168,7 +205,7 @@ impl Scale {
         let Some((mean, per_mean)) = &self.mean else { return of_shape };
         let variance = mean.variance * excess;
         let own = entries * *per_mean;
-        let of_mean = own * own.transpose() * variance;
+        let of_mean = own * own.transpose() * (variance + mean.walk);
         if let Some(shared) = motions.and_then(|motions| motions.shared(&mean.m)) {
             let both = shape * shared / mean.samples;
             // no more than all of the mean's noise, which an estimate short of efficient would seem to share
@@ -205,7 +242,32 @@ pub(crate) fn by_prior(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::Vector3;
+
+    /// The walk of the mean is the double sum of the covariances of all samples, and a gap between stretches is part of it.
+    #[test]
+    fn torque_noise_lets_the_mean_walk() {
+        let times: Vec<f64> = (0..30).map(|i| 0.1 * f64::from(i) + if i < 12 { 0.0 } else { 0.7 }).collect();
+        let rates: Vec<_> = times.iter().map(|_| Vector3::new(0.3, 1.0, -0.2)).collect();
+        let j = Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45));
+        let density = Matrix3::new(3.0, 1.0, 0.0, 1.0, 2.0, 0.5, 0.0, 0.5, 1.0) * 1e-4;
+        let (rms, noise) = (2.0, Noise { variance: 1e-4, is_in_rates: true });
+        let part = |range: core::ops::Range<usize>| {
+            let own = times[range.clone()].iter().map(|t| t - times[range.start]).collect();
+            Stretch { start: times[range.start] / rms, ..Stretch::new(own, rates[range].to_vec()) }
+        };
+        let stretches = [part(0..12), part(12..30)];
+        for (known, g) in [
+            (Known::TwiceEnergy(3.0), rates[0]),
+            (Known::Momentum(3.0), j * rates[0]),
+        ] {
+            let scale = scale_of(known, &stretches, rms, &j, noise).walking(&stretches, rms, |_| density);
+            let growth = 4.0 * g.dot(&(density * g));
+            let both = times.iter().flat_map(|a| times.iter().map(move |b| a.min(*b)));
+            let expected = growth * both.sum::<f64>() / 900.0;
+            let walk = scale.mean.map_or(f64::NAN, |(mean, _)| mean.walk);
+            assert!((walk / expected - 1.0).abs() < 1e-12, "{walk:e} {expected:e}");
+        }
+    }
 
     /// Without motions the covariance holds for errors of shape and mean that are correlated as badly as they can be, in
     /// every direction, with the least trace of such bounds.

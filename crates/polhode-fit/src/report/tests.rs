@@ -46,7 +46,7 @@ fn trends_of_momentum_and_energy_are_those_of_the_drag() {
             let (times, rates) = rates(&by, sigma, 120, &mut random);
             let s = [Stretch::new(times, rates)];
             let torque = |_| Matrix3::identity() * (density * density);
-            let (momentum, energy) = trends(&s, &body(), sigma * sigma, torque);
+            let (momentum, energy) = trends(&s, Clone::clone, &body(), sigma * sigma, torque);
             for (k, (trend, truth)) in [(momentum, -drag), (energy, -2.0 * drag)].into_iter().enumerate() {
                 let z = (trend.rate - truth) / trend.sigma;
                 means[k] += z / f64::from(count);
@@ -58,7 +58,7 @@ fn trends_of_momentum_and_energy_are_those_of_the_drag() {
         assert!(squares.iter().all(|square| (0.6..1.5).contains(square)), "{is_noisy}: {squares:?}");
     }
     let (times, rates) = rates(&Disturbances::default(), 0.0, 2, &mut random);
-    let (momentum, _) = trends(&[Stretch::new(times, rates)], &body(), 1e-6, |_| Matrix3::zeros());
+    let (momentum, _) = trends(&[Stretch::new(times, rates)], Clone::clone, &body(), 1e-6, |_| Matrix3::zeros());
     assert!(!momentum.significant() && momentum.rate == 0.0, "two samples have no trend");
 }
 

@@ -85,7 +85,7 @@ pub(crate) fn memory(residuals: &[Residuals], lags: usize) -> Option<Memory> {
     (lags > 0 && chi2 > quantile(found.dof as f64, MEMORY)).then_some(found)
 }
 
-/// Trends of |J ω| and of ω·J ω: slopes of their squares against time about each stretch's own mean. `torque` is the
+/// Trends of |J ω| and of ω·J ω: slopes of their squares against time about each stretch's own mean, ω being the `rate` of a reading. `torque` is the
 /// spectral density of the torque noise of each stretch, by its number.
 ///
 /// Each sample of |J ω|² has the variance 4 σ² |J² ω|², of ω·J ω the variance 4 σ² |J ω|²; the noise adds a constant to
@@ -93,17 +93,18 @@ pub(crate) fn memory(residuals: &[Residuals], lags: usize) -> Option<Memory> {
 /// of time.
 pub(crate) fn trends(
     stretches: &[Stretch],
+    rate: impl Fn(&Vector3<f64>) -> Vector3<f64>,
     j: &Matrix3<f64>,
     variance: f64,
     torque: impl Fn(usize) -> Matrix3<f64>,
 ) -> (InvariantTrend, InvariantTrend) {
     let jj = j * j;
-    let momentum = slope(stretches, &torque, |w, s| Reading {
+    let momentum = slope(stretches, &rate, &torque, |w, s| Reading {
         value: w.dot(&(jj * w)),
         variance: 4.0 * variance * (jj * w).norm_squared(),
         walk: 4.0 * (j * w).dot(&(s * j * w)),
     });
-    let energy = slope(stretches, &torque, |w, s| Reading {
+    let energy = slope(stretches, &rate, &torque, |w, s| Reading {
         value: w.dot(&(j * w)),
         variance: 4.0 * variance * (j * w).norm_squared(),
         walk: 4.0 * w.dot(&(s * w)),
@@ -123,6 +124,7 @@ struct Reading {
 
 fn slope(
     stretches: &[Stretch],
+    rate: impl Fn(&Vector3<f64>) -> Vector3<f64>,
     torque: impl Fn(usize) -> Matrix3<f64>,
     reading: impl Fn(&Vector3<f64>, &Matrix3<f64>) -> Reading,
 ) -> InvariantTrend {
@@ -131,7 +133,7 @@ fn slope(
         let n = s.times.len() as f64;
         let density = torque(k);
         let middle = s.times.iter().sum::<f64>() / n;
-        let values: Vec<Reading> = s.rates.iter().map(|w| reading(w, &density)).collect();
+        let values: Vec<Reading> = s.rates.iter().map(|w| reading(&rate(w), &density)).collect();
         let mean = values.iter().map(|v| v.value).sum::<f64>() / n;
         let spread = values.iter().map(|v| v.variance).sum::<f64>() / n;
         let walk = values.iter().map(|v| v.walk).sum::<f64>() / n;

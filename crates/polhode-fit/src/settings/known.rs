@@ -15,9 +15,9 @@ use nalgebra::Vector3;
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Known {
-    /// The magnitude |L| of the angular momentum of every segment, kg m²/s.
+    /// The magnitude |L| of the angular momentum of every segment, at its start where torques act at random, kg m²/s.
     Momentum(f64),
-    /// Twice the kinetic energy of every segment, kg m²/s².
+    /// Twice the kinetic energy of every segment, at its start where torques act at random, kg m²/s².
     TwiceEnergy(f64),
     /// The moment about an axis (any non-zero vector in sensor axes), kg m².
     Moment {

@@ -94,7 +94,9 @@ impl Case<'_> {
         let misfit = weak.misfit(variance);
         let axes = averages::axes(stretches, variance);
         let (fall, _) =
-            trends(stretches, &(Matrix3::identity() / 3.0), variance * misfit.max(1.0), |_| Matrix3::zeros());
+            trends(stretches, Clone::clone, &(Matrix3::identity() / 3.0), variance * misfit.max(1.0), |_| {
+                Matrix3::zeros()
+            });
         let fall = (settings.torque == TorqueModel::None && fall.rate < 0.0 && fall.significant())
             .then_some(-fall.rate * rms);
         FitError::Unsettled { rounds: ROUNDS, noise: variance.sqrt() * rms, factor, axes, fall, mirror: None }
