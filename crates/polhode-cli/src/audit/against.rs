@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::Vector3;
-use polhode::audit::{Reading, Trajectory, Verdict};
+use polhode::audit::{Direction, Reading, Trajectory, Verdict};
 use polhode::body::Body;
 use polhode::inertia::Inertia;
 use polhode::rotation::rotation_angle;
@@ -60,7 +60,7 @@ impl Golden {
         };
         let mut reading = Reading::default();
         reading.quaternion = claims.quaternion;
-        reading.attitude = Some(polhode::audit::Direction::BodyToSpace);
+        reading.attitude = Some(claims.attitude.unwrap_or(Direction::BodyToSpace));
         Ok(Self { name, rows, reading, body })
     }
 

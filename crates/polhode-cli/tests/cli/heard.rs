@@ -211,3 +211,41 @@ fn the_unit_of_a_simulated_start_is_the_one_that_is_named() {
     let first = |text: &str| text.lines().nth(1).unwrap().split(',').nth(1).unwrap().parse::<f64>().unwrap();
     assert!((first(&turned) / 5_f64.to_radians() - 1.0).abs() < 1e-12, "{turned}");
 }
+
+#[test]
+fn attitudes_from_space_to_body_say_so_in_their_names() {
+    let scratch = Scratch::new("heard-direction");
+    let rates = written(&scratch, "rates.csv", "t,omega", "t,wx (rad/s),wy (rad/s),wz (rad/s)");
+    let line = format!("attitude {rates} --start 1,0.2,0,0");
+    let names = "t,q_space_to_body_w,q_space_to_body_x,q_space_to_body_y,q_space_to_body_z,attitude_sigma";
+    for (flags, head, read) in [
+        ("", "t,q_w,q_x,q_y,q_z,attitude_sigma", "read as body to space"),
+        ("--direction space-to-body", names, "read as space to body"),
+    ] {
+        let file = scratch.0.join("written.csv").display().to_string();
+        assert_eq!(run(&format!("{line} {flags} --out {file}")).code, 0, "{flags}");
+        assert!(std::fs::read_to_string(&file).unwrap().starts_with(head), "{flags}");
+        let answer = run(&format!("attitude {rates} --against {file}"));
+        assert!(answer.code == 0 && answer.err.contains(read), "{answer:?}");
+        let errors = answer.out.lines().skip(1).map(|row| row.rsplit(',').next().unwrap().parse::<f64>());
+        let worst = errors.map(Result::unwrap).fold(0.0, f64::max);
+        assert!(worst < 1e-12, "{flags}: {worst}");
+    }
+    // other commands that read attitudes
+    let names = "t,q_space_to_body_w,q_space_to_body_x,q_space_to_body_y,q_space_to_body_z";
+    let inverse = |row: &[f64]| vec![row[0], row[1], -row[2], -row[3], -row[4]];
+    let inverse = made(&scratch, "inverse.csv", "t,q", names, inverse);
+    let poses = written(&scratch, "poses.csv", "t,q", "t,q_w,q_x,q_y,q_z");
+    let between = |file: &str| {
+        let text = std::fs::read_to_string(file).unwrap();
+        let few: Vec<&str> = text.lines().take(5).collect();
+        let few = scratch.file("few.csv", few.join("\n") + "\n");
+        run(&format!("propagate {BODY} --through {few} --every 0.05"))
+    };
+    let (found, expected) = (between(&inverse), between(&poses));
+    assert_eq!((found.code, found.out), (0, expected.out));
+    let header = format!("{names},omega_body_x,omega_body_y,omega_body_z");
+    let lie = written(&scratch, "lie.csv", WITH_RATES, &header);
+    let answer = run(&format!("audit {lie} {BODY}"));
+    assert!(answer.code == 1 && answer.err.contains("transposed"), "{answer:?}");
+}
