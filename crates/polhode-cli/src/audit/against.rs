@@ -36,6 +36,9 @@ impl Golden {
         let refused = |value: &str, rule: &str| {
             Error::input(&name, value, rule, "write golden trajectories by `polhode audit --golden DIR`")
         };
+        if found.counts_steps {
+            return Err(refused("", "counts steps of a length that it does not tell"));
+        }
         let line = |key: &str| -> Result<Option<[f64; 3]>, Error> {
             let text =
                 found.comments.iter().find_map(|line| line.strip_prefix(key)?.trim().strip_prefix(':'));

@@ -66,6 +66,20 @@ fn counts_of_steps_are_no_times() {
 }
 
 #[test]
+fn a_golden_trajectory_that_counts_steps_is_refused() {
+    let scratch = Scratch::new("heard-golden");
+    let columns = "q_w,q_x,q_y,q_z,omega_body_x,omega_body_y,omega_body_z";
+    let record = written(&scratch, "run.csv", WITH_RATES, &format!("t,{columns}"));
+    let golden = |name: &str, time: &str| {
+        written(&scratch, name, WITH_RATES, &format!("# moments: 1,2,3\n{time},{columns}"))
+    };
+    let of_times = golden("golden.csv", "t");
+    assert_eq!(run(&format!("audit {record} --against {of_times}")).code, 0);
+    let of_steps = golden("steps.csv", "timestep");
+    refused(&format!("audit {record} --against {of_steps}"), &["steps.csv", "counts steps"]);
+}
+
+#[test]
 fn a_unit_that_has_two_meanings_is_refused() {
     let scratch = Scratch::new("heard-rps");
     let file = written(&scratch, "rps.csv", "t,omega", "t,wx (rps),wy (rps),wz (rps)");
