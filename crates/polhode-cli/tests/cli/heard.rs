@@ -154,6 +154,24 @@ fn what_a_fit_cannot_use_or_write_is_refused() {
     let poses = written(&scratch, "poses.csv", "t,q", "t,q_w,q_x,q_y,q_z");
     refused(&format!("fit {poses} --axes x,-y,z"), &["--axes", "attitudes are fitted"]);
     refused(&format!("fit {rates} --attitude-noise 0.1"), &["--attitude-noise", "rates are fitted"]);
+    let flags = [
+        "--euler zyx",
+        "--euler zyx:extrinsic",
+        "--quaternion xyzw",
+        "--angle-unit deg",
+        "--attitude space-to-body",
+    ];
+    for flag in flags {
+        let (name, value) = flag.split_once(' ').unwrap();
+        let says = format!("{name}: '{value}': says how attitudes are written, and the rates are fitted");
+        refused(&format!("fit {rates} {flag}"), &[says.as_str(), "--from attitudes"]);
+    }
+    // which is of use where there are attitudes beside the rates
+    let numbered = "t,q0,q1,q2,q3,wx (rad/s),wy (rad/s),wz (rad/s)";
+    let both = written(&scratch, "both.csv", WITH_RATES, numbered);
+    let answer = run(&format!("fit {both} --quaternion wxyz"));
+    assert!(!answer.err.contains("--quaternion"), "{answer:?}");
+    refused(&format!("fit {both} --from rates --quaternion wxyz"), &["--quaternion", "the rates are fitted"]);
     let body = scratch.file("body.json", r#"{"inertia":[[1,0,0],[0,2,0],[0,0,2.5]]}"#);
     for flag in ["--report a.html", "--residuals a.csv", "--figure a.svg"] {
         let line = format!("fit {rates} --calibrate-wheel 0,0,1 --body {body} {flag}");
