@@ -32,6 +32,7 @@ pub struct EulerSequence([usize; 3]);
 /// Three angles, rad, in the order of the sequence.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[non_exhaustive]
 pub struct EulerAngles {
     /// The outer two in (−π, π], the middle one in [0, π] if the outer axes agree, else in [−π/2, π/2].
     pub angles: [f64; 3],

@@ -39,6 +39,7 @@ pub struct StartCovariance {
 /// How uncertain a state is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[non_exhaustive]
 pub struct StateCovariance {
     /// Of rotation vector (rad) and angular velocity (body axes, rad/s), to first order.
     pub state: Matrix6<f64>,

@@ -24,6 +24,7 @@ const ROUNDING: f64 = 1e-28;
 /// The free motion that passes many attitudes as nearly as their noise allows.
 #[derive(Clone, Debug)]
 #[must_use]
+#[non_exhaustive]
 pub struct FittedMotion {
     /// The motion, whose t = 0 is the time of the first attitude.
     pub motion: FreeMotion,
