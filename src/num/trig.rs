@@ -83,7 +83,7 @@ pub fn sin_versine_small(x: f64) -> (f64, f64) {
 
 /// `sin x / x` and `cos x` of the angle x with the square `z`, x ≤ [`SMALL`], by the same polynomials.
 #[inline(always)]
-pub fn sinc_cos_small(z: f64) -> (f64, f64) {
+pub(crate) fn sinc_cos_small(z: f64) -> (f64, f64) {
     (1.0 + z * sine_small(z), cos_small(z))
 }
 

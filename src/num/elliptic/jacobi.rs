@@ -42,7 +42,7 @@ impl<S: Precise> Modulus<S> {
 
     /// k' = √m1.
     #[inline]
-    pub fn complementary_modulus(&self) -> S {
+    pub(crate) fn complementary_modulus(&self) -> S {
         self.ladder[0].1
     }
 
