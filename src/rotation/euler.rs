@@ -30,6 +30,15 @@ const LOCK: f64 = f64::EPSILON;
 pub struct EulerSequence([usize; 3]);
 
 /// Three angles, rad, in the order of the sequence.
+///
+/// ```
+/// use polhode::rotation::EulerSequence;
+/// let yaw_pitch_roll: EulerSequence = "zyx".parse()?;
+/// let upright = yaw_pitch_roll.attitude([0.3, core::f64::consts::FRAC_PI_2, 0.2]);
+/// let found = yaw_pitch_roll.angles(upright);
+/// assert!(found.locked && found.angles[2] == 0.0);
+/// # Ok::<(), polhode::rotation::EulerSequenceError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 #[non_exhaustive]
