@@ -1,4 +1,4 @@
-//! Which integrator leaves the errors of a record: those of the catalogue are run from its start.
+//! Which integrator leaves the errors of a record: those of the catalogue and some others are run from its start.
 
 use super::Signature;
 use super::motion::motion;

@@ -8,7 +8,7 @@ use crate::method::{
     VariationalCayley,
 };
 
-/// Every method, in the order in which tables show them; of those that take an argument or a scheme the usual ones.
+/// The methods that tables show, in their order; of those that take an argument or a scheme the usual ones.
 ///
 /// ```
 /// use polhode::method::{Claimed, catalogue, method};
