@@ -138,6 +138,10 @@ pub fn bodies() -> Vec<NamedBody> {
 }
 
 /// All tops, toys first.
+///
+/// ```
+/// assert!(polhode::catalogue::tops().iter().any(|top| top.name == "bicycle-wheel"));
+/// ```
 pub fn tops() -> Vec<NamedBody> {
     top_entries().into_iter().filter_map(Top::build).collect()
 }
@@ -156,6 +160,14 @@ pub fn top(name: &str) -> Option<NamedBody> {
 }
 
 /// The body without a fixed point called `name`.
+///
+/// ```
+/// use polhode::catalogue::body;
+/// let toutatis = body("toutatis").ok_or("not in the catalogue")?;
+/// assert_eq!(toutatis.unit, "ratio"); // only ratios of its moments are known
+/// assert!(body("no-such-body").is_none());
+/// # Ok::<(), polhode::Error>(())
+/// ```
 pub fn body(name: &str) -> Option<NamedBody> {
     entries().into_iter().find(|entry| entry.name == name).and_then(Entry::build)
 }

@@ -2,7 +2,9 @@
 
 use polhode::body::Problem;
 use polhode::method::schemes::{self, Pairs, Part, Stages};
-use polhode::method::{Claimed, Claims, ExactFlow, Kicks, Splitting, catalogue, listing};
+use polhode::method::{
+    Claimed, Claims, Dissipating, ExactFlow, Kicks, LinearlyImplicitEuler, Splitting, catalogue, listing,
+};
 use polhode_pages::table::{Cell, Column, Table, row};
 
 /// One row a method of the catalogue, from its claims for free motion; the closed form first.
@@ -38,6 +40,25 @@ pub fn table() -> Table {
         let in_potential = || method.claims(Problem::Potential).and_then(|claims| claims.order);
         let order = claims.order.or_else(in_potential);
         table.push(cells(method.name(), order, &claims, claims.cost.to_string(), claims.source));
+    }
+    table
+}
+
+/// The same with the methods that have a name on the command line and stand outside of the catalogue: one step of a simulator, which no
+/// experiment takes, and the motion of a body with inner friction, which is another problem.
+pub fn listed() -> Table {
+    let mut table = table();
+    let euler = LinearlyImplicitEuler;
+    if let Some(claims) = euler.claims(Problem::Free) {
+        let (order, cost) = (claims.order, claims.cost.to_string());
+        table.push(cells(euler.name(), order, &claims, cost, claims.source));
+    }
+    // its claims are those of any loss
+    let method = |parts: Dissipating| Splitting::of_flows(parts, schemes::STRANG).ok();
+    let friction = Dissipating::new(1e-3).ok().and_then(method);
+    if let Some(claims) = friction.and_then(|friction| friction.claims(Problem::Free)) {
+        let (order, cost) = (claims.order, claims.cost.to_string());
+        table.push(cells("dissipating:LOSS".into(), order, &claims, cost, claims.source));
     }
     table
 }

@@ -4,7 +4,7 @@ use super::{Demand, Setting};
 use crate::body::{Body, Problem};
 use crate::method::{AnyMethod, Claimed, Claims, Energy, ToleranceError, method, without_projections};
 
-/// Methods of higher order than those of the catalogue.
+/// Methods beside those of the catalogue: its bases with other orders and schemes.
 const BESIDES: [&str; 24] = [
     "dmv:4",
     "dmv:6",

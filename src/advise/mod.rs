@@ -1,9 +1,9 @@
 //! Which method, with which step: from short runs of every candidate on the body itself.
 //!
 //! The reference is the closed form. Without one it is two runs of different methods in `f64` over the whole time, whose steps follow
-//! the rate of turning, as far as they agree to a tenth of the demand; where the digits of `f64` do not suffice, in double-double. Each candidate
-//! of the catalogue runs over a short part, where the body turns fastest, in steps that are halved until its error tells the step
-//! that the demand needs. The quickest of them then run over the whole time at the setting that is advised; only of
+//! the rate of turning, as far as they agree to a tenth of the demand; where the digits of `f64` do not suffice, in double-double. Each candidate,
+//! of the catalogue or with another order or scheme, runs over a short part, where the body turns fastest, in steps that are halved
+//! until its error tells the step that the demand needs. The quickest of them then run over the whole time at the setting that is advised; only of
 //! bodies with a closed form, whose errors grow no faster than the time, are runs of more than a few seconds extrapolated. Processor
 //! times are measured in the same runs.
 //!

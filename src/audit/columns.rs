@@ -4,7 +4,7 @@ use super::program::{Dynamics, Program, Turn};
 use super::rows::Windows;
 use super::shape::Look;
 use super::{Attitudes, Frame, Reading, Trajectory};
-use crate::rotation::{Quat, Vec3, rotation_vector, turn_by};
+use crate::rotation::{Quat, Vec3};
 
 /// What the angular velocity is read from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,7 +96,7 @@ impl<'a> Columns<'a> {
             for row in (start + windows.node..=end).step_by(windows.node) {
                 let dt = self.record.times[row] - self.record.times[row - windows.node];
                 let next = self.omega(reading, dynamics, row)?;
-                let by = turn_by((before + next) * (0.5 * dt * turn.factor));
+                let by = Quat::exponential((before + next) * (0.5 * dt * turn.factor));
                 q = if turn.frame == Frame::Body { q * by } else { by * q };
                 before = next;
             }
@@ -178,8 +178,8 @@ impl<'a> Columns<'a> {
                     let next = (row + windows.node).min(self.record.times.len() - 1);
                     let (a, b) = (attitude?, reading.attitude(self.record, next)?);
                     let dt = self.record.times[next] - time;
-                    let turn = rotation_vector(a.conjugate() * b);
-                    let middle = a * turn_by(turn * 0.5);
+                    let turn = (a.conjugate() * b).logarithm();
+                    let middle = a * Quat::exponential(turn * 0.5);
                     Some(Look { time: time + 0.5 * dt, attitude: Some(middle), omega: turn * (1.0 / dt) })
                 }
             }
@@ -200,11 +200,11 @@ fn shot(
     [from, to]: [Quat<f64>; 2],
 ) -> Vec3<f64> {
     let dt = next - t;
-    let mut omega = rotation_vector(from.conjugate() * to) * (1.0 / dt);
+    let mut omega = (from.conjugate() * to).logarithm() * (1.0 / dt);
     for _ in 0..12 {
         let (reached, _) = dynamics.after(program, t, dt, from, omega);
         // what is missing, turned into the axes of the start
-        let missing = from.rotate_back(reached.rotate(rotation_vector(reached.conjugate() * to)));
+        let missing = from.rotate_back(reached.rotate((reached.conjugate() * to).logarithm()));
         omega = omega + missing * (1.0 / dt);
         if missing.magnitude() < 1e-12 {
             break;
@@ -215,7 +215,7 @@ fn shot(
 
 /// The angle between two attitudes of norm 1, rad, by the chord where it is small.
 fn small_angle(a: Quat<f64>, b: Quat<f64>) -> f64 {
-    rotation_vector(a.conjugate() * b).norm()
+    (a.conjugate() * b).logarithm().norm()
 }
 
 /// What four out of five are at most.

@@ -4,7 +4,7 @@ use super::bodies::Told;
 use super::deviation::{Allowances, deviation};
 use super::{Attitudes, Fault, Judgement, Misplaced, Reading, Trajectory};
 use crate::body::Body;
-use crate::rotation::{Vec3, rotation_vector};
+use crate::rotation::Vec3;
 
 /// Rows that are looked at first.
 const LOOKS: usize = 256;
@@ -53,7 +53,7 @@ fn goes_back_and_forth(record: &Trajectory, reading: &Reading) -> bool {
 fn change(record: &Trajectory, reading: &Reading, from: usize, to: usize) -> f64 {
     let attitudes = reading.attitude(record, from).zip(reading.attitude(record, to));
     if let Some((p, q)) = attitudes {
-        return rotation_vector(p.conjugate() * q).norm();
+        return (p.conjugate() * q).logarithm().norm();
     }
     let vectors = record.rates.as_ref().or(record.momentum.as_ref());
     vectors.map_or(0.0, |vectors| {

@@ -4,7 +4,7 @@ use core::f64::consts::PI;
 
 use super::resolution::Writing;
 use super::{Attitudes, Fault, Reading, Trajectory};
-use crate::rotation::{Vec3, rotation_vector};
+use crate::rotation::Vec3;
 
 /// An interval this many times the usual one is a jump.
 const JUMP: f64 = 1.5;
@@ -173,7 +173,7 @@ pub(super) fn discontinuity(record: &Trajectory, reading: &Reading, rounding: f6
             return None;
         }
         let (before, now) = (at(row - 1), at(row));
-        let turn = before.0.zip(now.0).map(|(p, q)| rotation_vector(p.conjugate() * q));
+        let turn = before.0.zip(now.0).map(|(p, q)| (p.conjugate() * q).logarithm());
         Some(match (before.1, now.1) {
             (Some(a), Some(b)) => {
                 let turned = turn.map_or(0.0, |turn| (turn - (a + b) * (0.5 * dt)).norm());

@@ -24,7 +24,7 @@ use super::{
 };
 use crate::body::{Body, Problem};
 use crate::inertia::Symmetry;
-use crate::rotation::{Vec3, rotation_vector};
+use crate::rotation::Vec3;
 
 /// An angular velocity between two attitudes, relative, is off by at most so many times what one of them is, over the turn.
 const DERIVED: f64 = 3.0;
@@ -221,7 +221,7 @@ fn window_turn(record: &Trajectory, reading: &Reading) -> f64 {
     let windows = Columns::new(record).windows();
     let turn = |&start: &usize| {
         let ends = reading.attitude(record, start).zip(reading.attitude(record, start + windows.stride));
-        ends.map_or(0.0, |(p, q)| rotation_vector(p.conjugate() * q).norm())
+        ends.map_or(0.0, |(p, q)| (p.conjugate() * q).logarithm().norm())
     };
     let mut turns: Vec<f64> = windows.starts.iter().map(turn).collect();
     turns.sort_by(f64::total_cmp);

@@ -4,7 +4,7 @@ use super::deviation::{Allowances, Deviation};
 use super::sweep::{Seen, Sweep};
 use super::{Fault, Misplaced, Reading, Trajectory};
 use crate::body::Problem;
-use crate::rotation::{Quat, Vec3, rotation_vector};
+use crate::rotation::{Quat, Vec3};
 
 /// More than this share of the rows, and it is the motion that is another, not rows that are misplaced.
 const MOST: f64 = 0.6;
@@ -80,7 +80,7 @@ pub(super) fn misplaced(
 /// What the row `now` holds, which is `size` away from the motion.
 fn kind(before: Option<&Seen>, now: &Seen, behind: Option<&Seen>, size: f64) -> Misplaced {
     let near = |a: (Option<Quat<f64>>, Option<Vec3<f64>>), b: (Option<Quat<f64>>, Option<Vec3<f64>>)| {
-        let turn = a.0.zip(b.0).map_or(0.0, |(p, q)| rotation_vector(p.conjugate() * q).norm());
+        let turn = a.0.zip(b.0).map_or(0.0, |(p, q)| (p.conjugate() * q).logarithm().norm());
         let scale = a.1.map_or(0.0, |omega| omega.norm());
         let rates = a.1.zip(b.1).map_or(0.0, |(v, w)| (v - w).norm() / scale.max(f64::MIN_POSITIVE));
         turn.max(rates) <= NEAR * size.min(1.0)

@@ -5,7 +5,7 @@ use super::rows::Windows;
 use super::states::{Row, states};
 use super::{Frame, OtherTorque, Reading, Trajectory};
 use crate::body::{Body, Problem, Time};
-use crate::rotation::{Vec3, rotation_vector};
+use crate::rotation::Vec3;
 
 /// A change of L over a window this many times what a row may be off stands out.
 const STANDS_OUT: f64 = 5.0;
@@ -149,7 +149,7 @@ fn look(rows: &[Row], dynamics: &Dynamics, body: &Body, free: bool) -> Option<Lo
         let dt = b.time - a.time;
         impulse = impulse + (torque(a)? + torque(b)?) * (0.5 * dt);
         kept.push(momentum(b)? - impulse);
-        let turned = rotation_vector(a.attitude?.conjugate() * b.attitude?);
+        let turned = (a.attitude?.conjugate() * b.attitude?).logarithm();
         // Magnus's series to fourth order, with the integral of a cubic
         let bent = a.omega.cross(b.omega) + rate(a)? - rate(b)?;
         let by_rates = (a.omega + b.omega) * (0.5 * dt) + bent * (dt * dt / 12.0);

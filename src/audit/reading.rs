@@ -128,7 +128,7 @@ impl Reading {
 
     /// Whether the moments are in the order in which they were given.
     #[must_use]
-    pub fn moments_as_given(&self) -> bool {
+    pub(super) fn moments_as_given(&self) -> bool {
         self.moments == [0, 1, 2]
     }
 }

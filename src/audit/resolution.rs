@@ -1,7 +1,7 @@
 //! What the writing of a record leaves open: digits, single precision, noise.
 
 use super::{Attitudes, Reading, Trajectory};
-use crate::rotation::{Vec3, rotation_vector};
+use crate::rotation::Vec3;
 
 /// Most rows whose digits are counted.
 const MOST: usize = 2000;
@@ -201,7 +201,7 @@ pub(super) fn rounding_turn(record: &Trajectory, reading: &Reading, writing: Wri
             // large enough to be seen beside the rounding of doubles; turns this small grow in proportion
             let (half, step) = (writing.half_unit(x), 1e-7);
             one.attitude.as_mut()?.numbers()[n] = x + step;
-            turns.push(rotation_vector(own.conjugate() * reading.attitude(&one, 0)?) * (half / step));
+            turns.push((own.conjugate() * reading.attitude(&one, 0)?).logarithm() * (half / step));
             one.attitude.as_mut()?.numbers()[n] = x;
         }
         // each number may be off to either side

@@ -1,4 +1,4 @@
-//! Which integrator leaves the errors of a record: those of the catalogue are run from its start.
+//! Which integrator leaves the errors of a record: those of the catalogue and some others are run from its start.
 
 use super::Signature;
 use super::motion::motion;
@@ -9,7 +9,7 @@ use crate::inertia::Symmetry;
 use crate::method::{
     AnyMethod, AxisOrder, AxisSplit, Claimed as _, Kicks, LiePoisson, method, without_projections,
 };
-use crate::rotation::{Quat, Vec3, rotation_vector};
+use crate::rotation::{Quat, Vec3};
 use crate::run::{Run, Watch};
 
 /// Methods outside the catalogue that programs in use are built on.
@@ -72,7 +72,7 @@ pub(super) fn signature(
         return None;
     }
     let apart = |row: &Row, q: Quat<f64>, omega: Vec3<f64>| {
-        let turn = row.attitude.map_or(0.0, |measured| rotation_vector(q.conjugate() * measured).norm());
+        let turn = row.attitude.map_or(0.0, |measured| (q.conjugate() * measured).logarithm().norm());
         let rates = (row.omega - omega).norm() / size;
         (turn, (turn * turn + rates * rates).sqrt())
     };
@@ -146,7 +146,7 @@ pub(super) fn signature(
         step: interval / best.steps as f64,
         steps_per_row: best.steps,
         order: best.method.claims(body.problem()).and_then(|claims| claims.order),
-        predicted_attitude_error: rotation_vector(exact[last].0.conjugate() * q).norm(),
+        predicted_attitude_error: (exact[last].0.conjugate() * q).logarithm().norm(),
         measured_attitude_error: errors[last].0,
         predicted_energy_change: keeps_energy.then(|| energy(&predicted)),
         measured_energy_change: keeps_energy.then(|| energy(row)),
@@ -171,7 +171,7 @@ impl Tried<'_> {
     /// From what `other` does; also in attitudes that the record has not. `size`: of ω, rad/s.
     fn distance(&self, other: &Self, size: f64) -> f64 {
         let square = |(a, b): (&State, &State)| {
-            let turn = rotation_vector(a.0.conjugate() * b.0).norm_squared();
+            let turn = (a.0.conjugate() * b.0).logarithm().norm_squared();
             turn + (a.1 - b.1).norm_squared() / (size * size)
         };
         self.found.iter().zip(&other.found).map(square).sum::<f64>().sqrt()
@@ -212,7 +212,7 @@ fn clock(body: &Body, first: &Row, rows: &[(&Row, State)]) -> Option<f64> {
     let (mut squares, mut along, mut by_clock) = (0.0, 0.0, 0.0);
     for ((row, exact), later) in rows.iter().zip(&later) {
         let from_exact = |attitude: Option<Quat<f64>>, omega: Vec3<f64>| {
-            let turn = attitude.map_or(Vec3::zero(), |q| rotation_vector(exact.0.conjugate() * q));
+            let turn = attitude.map_or(Vec3::zero(), |q| (exact.0.conjugate() * q).logarithm());
             (turn, (omega - exact.1) * (1.0 / size))
         };
         let error = from_exact(row.attitude, row.omega);
@@ -276,7 +276,6 @@ impl Flips {
 mod tests {
     use super::*;
     use crate::inertia::Inertia;
-    use crate::rotation::turn_by;
 
     /// A free body, and its state at the start, body axes, `speed` times as fast as usual.
     fn tumbling(speed: f64) -> (Body, Row) {
@@ -287,7 +286,7 @@ mod tests {
 
     /// A part of the turn from `a` to `b`.
     fn between(a: Quat<f64>, b: Quat<f64>, part: f64) -> Quat<f64> {
-        a * turn_by(rotation_vector(a.conjugate() * b) * part)
+        a * Quat::exponential((a.conjugate() * b).logarithm() * part)
     }
 
     /// Of errors of which parts are those of a clock, what is across them: by the projection in attitude and relative ω.
@@ -309,7 +308,7 @@ mod tests {
             };
             let (mut turns, mut rates) = (0.0, 0.0);
             for (a, b) in exact.iter().zip(&fast) {
-                turns += rotation_vector(a.0.conjugate() * b.0).norm_squared();
+                turns += (a.0.conjugate() * b.0).logarithm().norm_squared();
                 rates += (b.1 - a.1).norm_squared() / first.omega.norm_squared();
             }
             assert!(across(1.0, 1.0) < 1e-3, "{}", across(1.0, 1.0));

@@ -8,7 +8,7 @@ use super::states::Row;
 use crate::body::{Body, Problem};
 use crate::inertia::Inertia;
 use crate::num::eigen::eigen;
-use crate::rotation::{Vec3, rotation_vector, turn_by};
+use crate::rotation::{Quat, Vec3};
 
 /// Three turns of the start, three components of its angular velocity, six entries of the tensor.
 const UNKNOWNS: usize = 12;
@@ -56,7 +56,7 @@ pub(super) fn distances(start: &Start, rows: &[Row], precise: bool) -> Option<Ve
             .map(|(row, (q, omega))| {
                 let turn = row
                     .attitude
-                    .map_or(Vec3::zero(), |measured| q.rotate(rotation_vector(q.conjugate() * measured)));
+                    .map_or(Vec3::zero(), |measured| q.rotate((q.conjugate() * measured).logarithm()));
                 (turn, row.omega - omega)
             })
             .collect(),
@@ -170,7 +170,7 @@ fn improved(
 fn changed(start: &Start, told: Option<&Told>, change: [f64; UNKNOWNS], size: f64) -> Option<Start> {
     let [a, b, c, x, y, z, tensor @ ..] = change;
     let mut row = start.row;
-    row.attitude = row.attitude.map(|q| q * turn_by(Vec3([a, b, c])));
+    row.attitude = row.attitude.map(|q| q * Quat::exponential(Vec3([a, b, c])));
     row.omega = row.omega + Vec3([x, y, z]) * size;
     if tensor == [0.0; 6] {
         let body = match told {
@@ -189,7 +189,6 @@ fn changed(start: &Start, told: Option<&Told>, change: [f64; UNKNOWNS], size: f6
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rotation::Quat;
 
     #[test]
     fn a_motion_is_lost_that_more_than_half_of_the_rows_are_far_from() {
@@ -201,7 +200,7 @@ mod tests {
         let start = Start { row: first, body };
         let weights = Weights { attitude: 1.0, rates: 1.0, size: 1.1 };
         let is_lost = |far: usize| {
-            let off = |k: usize| turn_by(Vec3([if k < far { 0.6 } else { 0.4 }, 0.0, 0.0]));
+            let off = |k: usize| Quat::exponential(Vec3([if k < far { 0.6 } else { 0.4 }, 0.0, 0.0]));
             let rows = exact.iter().enumerate().map(|(k, (q, omega))| row(k, *q * off(k), *omega));
             is_lost(&start, &rows.collect::<Vec<_>>(), weights).unwrap()
         };

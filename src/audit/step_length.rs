@@ -15,6 +15,16 @@ const NEAR: f64 = 0.01;
 /// The quaternions are scalar first, from body to space; rates and momenta are along the axes of space. Rates are in rad/s, momenta
 /// in the unit of the body's inertia times rad/s. `None` where the body turns too far between rows, where the record has no rates
 /// and no momenta with a body, and where its columns and its times differ in length.
+///
+/// ```
+/// use polhode::audit::{Attitudes, Trajectory, step_length};
+/// // a row after every 100 steps, in which a body of 0.5 rad/s turns by 0.25 rad
+/// let row = |k: u32| [libm::cos(0.125 * f64::from(k)), 0.0, 0.0, libm::sin(0.125 * f64::from(k))];
+/// let record = Trajectory::new((0..20).map(|k| 100.0 * f64::from(k)).collect())
+///     .with_attitude(Attitudes::Quaternions((0..20).map(row).collect()))
+///     .with_rates(vec![[0.0, 0.0, 0.5]; 20]);
+/// assert_eq!(step_length(&record, None), Some(0.005));
+/// ```
 pub fn step_length(record: &Trajectory, body: Option<&Body>) -> Option<f64> {
     let Some(Attitudes::Quaternions(rows)) = &record.attitude else { return None };
     let length = |column: &Option<Vec<[f64; 3]>>| column.as_ref().map_or(rows.len(), Vec::len);

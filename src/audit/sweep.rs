@@ -7,7 +7,7 @@ use super::motion::{follow, way};
 use super::program::Dynamics;
 use super::start::Start;
 use super::{Reading, Trajectory};
-use crate::rotation::{Quat, Vec3, rotation_vector};
+use crate::rotation::{Quat, Vec3};
 
 /// Rows and the way, rad, up to which a motion without closed form is followed in double-double.
 const FEW: usize = 2000;
@@ -77,7 +77,7 @@ impl Sweep<'_> {
                 attitude,
                 omega: measured,
                 exact: (q, omega),
-                turn: attitude.map(|found| q.rotate(rotation_vector(q.conjugate() * found))),
+                turn: attitude.map(|found| q.rotate((q.conjugate() * found).logarithm())),
                 rates: measured.map(|found| (found - omega) * (1.0 / self.size)),
                 momentum: momentum.map(|m| (m - dynamics.momentum(omega) * scale) * (1.0 / size)),
             };

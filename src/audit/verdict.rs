@@ -153,7 +153,7 @@ pub struct AttitudeError {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Signature {
-    /// Its name in the catalogue.
+    /// Its name, as [`method()`](crate::method()) takes it.
     pub method: String,
     /// Its step, s.
     pub step: f64,

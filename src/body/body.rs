@@ -35,6 +35,18 @@ pub enum Problem {
 /// underflow and a change of the unit of mass by a power of two changes no bit. [`enter`](Body::enter) and
 /// [`leave`](Body::leave) convert between the two. The momentum of both is that of the carrier, I ω;
 /// [`momentum_space`](Self::momentum_space) adds that of wheels.
+///
+/// ```
+/// use polhode::body::{Body, Problem};
+/// use polhode::inertia::Inertia;
+/// let inertia = Inertia::from_moments([1.0, 2.0, 3.0])?;
+/// let body = Body::free(inertia.clone());
+/// let start = body.state(Default::default(), [0.0, 0.0, 2.0].into())?;
+/// assert!((body.energy(&start) - 6.0).abs() < 1e-14); // ½ I ω²
+/// let top = Body::heavy(inertia, [0.0, 0.0, 1.0].into())?;
+/// assert_eq!([body.problem(), top.problem()], [Problem::Free, Problem::Linear]);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 #[must_use]
 pub struct Body {

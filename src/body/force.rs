@@ -136,7 +136,7 @@ impl Force {
 
     /// Whether it has a potential.
     #[must_use]
-    pub fn has_potential(&self) -> bool {
+    pub(crate) fn has_potential(&self) -> bool {
         matches!(self.law, Law::Potential(_))
     }
 }

@@ -4,6 +4,13 @@ use crate::num::Real;
 use crate::rotation::{Quat, Vec3};
 
 /// The vertical in body axes, Γ = Qᵀ e_z, upwards; as long as |q|².
+///
+/// ```
+/// use polhode::body::vertical;
+/// use polhode::rotation::{Quat, Vec3};
+/// let quarter = Quat::exponential(Vec3([core::f64::consts::FRAC_PI_2, 0.0, 0.0])); // about x: y points upwards
+/// assert!((vertical(quarter) - Vec3::unit(1)).norm() < 1e-15);
+/// ```
 #[inline]
 pub fn vertical<S: Real>(attitude: Quat<S>) -> Vec3<S> {
     let (w, Vec3([x, y, z])) = (attitude.w, attitude.v);
@@ -16,6 +23,16 @@ pub fn vertical<S: Real>(attitude: Quat<S>) -> Vec3<S> {
 /// For uniform gravity along −Z of space c is the weight M g times the centre of mass. The moment is in the axes of the
 /// attitude: of [`Body::linear_potential`](super::Body::linear_potential) the principal axes, and in N m divided by the scale.
 /// As Γ is quadratic in q and turns with the body, methods have closed forms for it that they lack for other forces.
+///
+/// ```
+/// use polhode::body::LinearPotential;
+/// use polhode::rotation::{Quat, Vec3};
+/// let top = LinearPotential { moment: Vec3([0.0, 0.0, 2.0]) };
+/// let lying = Quat::exponential(Vec3([core::f64::consts::FRAC_PI_2, 0.0, 0.0])); // a quarter turn about x
+/// assert_eq!(top.energy(Quat::identity()), 2.0);
+/// assert!(top.energy(lying).abs() < 1e-14);
+/// assert!((top.torque(lying) - Vec3([2.0, 0.0, 0.0])).norm() < 1e-14); // it falls further
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LinearPotential<S> {
     /// Moment c in body axes.

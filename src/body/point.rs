@@ -100,7 +100,7 @@ impl<S: Real> Point<S> {
 
     /// `m[axis] += delta`.
     #[inline(always)]
-    pub fn add_component(&mut self, axis: usize, delta: S) {
+    pub(crate) fn add_component(&mut self, axis: usize, delta: S) {
         add_carried(&mut self.momentum_body[axis], &mut self.carried.momentum_body[axis], delta);
     }
 

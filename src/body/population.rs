@@ -222,7 +222,7 @@ fn valid<T>(mut draw: impl FnMut() -> Result<T, InertiaError>) -> Result<(T, u32
     }
 }
 
-/// The turn by a rotation vector.
+/// The turn by a rotation vector. Its bits differ from those of [`Quat::exponential`], and the members of a seed keep theirs.
 fn turned_by(vector: Vec3<f64>) -> Quat<f64> {
     let half = vector * 0.5;
     let (sinc, cos) = half.norm_squared().sinc_cos_of_root();

@@ -7,6 +7,13 @@ use crate::num::{Dd, Precise, Real};
 const COUNTED: f64 = 2_251_799_813_685_248.0;
 
 /// When a run starts and how long its steps are: step n begins at `start + n · step`.
+///
+/// ```
+/// use polhode::body::Clock;
+/// let sum: f64 = (0..1000).map(|_| 0.1).sum();
+/// assert_eq!(Clock::new(0.1).at(1000).seconds::<f64>(), 100.0);
+/// assert_ne!(sum, 100.0); // each addition rounds
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
 pub struct Clock {

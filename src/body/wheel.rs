@@ -405,7 +405,7 @@ impl Wheels {
 
     /// Whether it does not change.
     #[must_use]
-    pub fn is_constant(&self) -> bool {
+    pub(crate) fn is_constant(&self) -> bool {
         self.driven.is_empty()
     }
 

@@ -78,7 +78,7 @@ pub(crate) fn turn_about_axis<S: Real>(axis: usize, x: &mut Point<S>, half_rate_
 /// the sine then turns it by another angle, one of the cosine changes |m| by the fraction sin² of it, and what rounding adds
 /// has no preferred sign: |m| walks at random instead of drifting. The quaternion takes the same sine and cosine, so that
 /// `q m q*` keeps its direction; it needs `1 − cos`, which is not rounded as a number next to 1 is, so that |q| hardly
-/// wanders where the angle is small. The axis is a constant so that the state stays in registers.
+/// wanders where the angle is small. The axis is a constant: which components move is known when the code is compiled.
 #[inline]
 pub(crate) fn turn_about<const AXIS: usize, S: Real>(x: &mut Point<S>, half_rate_time: S) {
     turn_by::<AXIS, S>(x, (x.momentum_body[AXIS] * half_rate_time).sin_versine());

@@ -1,7 +1,7 @@
 //! Laws: what a method, a force or a scheme claims, measured.
 //!
-//! [`check`] measures every claim of a [method](crate::method::AnyMethod) on [four bodies](cases): free, under gravity, in a
-//! potential and under a torque. What is exact in exact arithmetic is measured in double-double, where it shows as 1e-28 and a
+//! [`check`] measures every claim of a [method](crate::method::AnyMethod) on [six bodies](cases): free, under gravity, in a
+//! potential, under a torque, with wheels, and with wheels in a potential. What is exact in exact arithmetic is measured in double-double, where it shows as 1e-28 and a
 //! broken law cannot hide behind rounding; the law of round-off and secular drifts are measured in double precision. Claims
 //! that say no are measured too: what a method does not claim to keep must be seen to be lost. A law that a measurement does
 //! not decide says so.

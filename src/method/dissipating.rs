@@ -69,4 +69,8 @@ impl KineticSplit for Dissipating {
     fn cost(&self) -> Cost {
         Cost::free_flows(2)
     }
+    fn source(&self) -> &'static str {
+        "Brockett, Linear Algebra Appl. 146 (1991) 79; Bloch, Krishnaprasad, Marsden and Ratiu, Commun. \
+         Math. Phys. 175 (1996) 1"
+    }
 }

@@ -27,6 +27,13 @@ use crate::rotation::{Quat, Vec3};
 /// `two-turn@blanes-moan-s10`. With forces there are compositions only.
 ///
 /// Reference: Fassò, J. Comput. Phys. 189 (2003) 527, compares the energy errors of such splittings.
+///
+/// ```
+/// use polhode::method::{Claimed, Kicks, Splitting, TwoTurn};
+/// let outer_z = TwoTurn { axes: Some("31".parse()?) };
+/// assert_eq!(Splitting::strang(outer_z, Kicks).name(), "two-turn:31");
+/// # Ok::<(), polhode::method::TwoAxesError>(())
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct TwoTurn {
     /// Outer and inner axis; `None` takes those with the smallest leading error of the attitude as a root mean square over all starts of
@@ -36,6 +43,13 @@ pub struct TwoTurn {
 }
 
 /// The axes of the two turns, the outer one first: `31` is Φ = C(h) R3(h/2) R1(h) R3(h/2).
+///
+/// ```
+/// use polhode::method::TwoAxes;
+/// let axes: TwoAxes = "31".parse()?;
+/// assert_eq!((axes.axes(), axes.reference()), ([2, 0], 1));
+/// # Ok::<(), polhode::method::TwoAxesError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TwoAxes([usize; 2]);
 
@@ -134,6 +148,7 @@ impl fmt::Display for TwoAxes {
 /// The text is no pair of axes.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 #[error("axes {text:?} are no two different ones of 123, such as 31 (the outer one first)")]
+#[non_exhaustive]
 pub struct TwoAxesError {
     /// What was given.
     pub text: String,

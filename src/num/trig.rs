@@ -36,6 +36,12 @@ const HALF_PI: [f64; 4] =
 const ROUNDER: f64 = 6_755_399_441_055_744.0; // 1.5 · 2⁵²
 
 /// Sine and cosine of `x` radians; NaN unless `x` is finite. The sine of −0 is +0.
+///
+/// ```
+/// use polhode::num::trig::sin_cos;
+/// let (sin, cos) = sin_cos(core::f64::consts::FRAC_PI_6);
+/// assert!((sin - 0.5).abs() < 1e-15 && (sin * sin + cos * cos - 1.0).abs() < 1e-15);
+/// ```
 #[inline]
 #[must_use]
 pub fn sin_cos(x: f64) -> (f64, f64) {
@@ -50,6 +56,12 @@ pub(crate) fn sin_cos_moderate(x: f64) -> (f64, f64) {
 
 /// `sin x` and `1 − cos x` of `x` radians; NaN unless `x` is finite. The second is without cancellation up to |x| = π/4; next to a
 /// whole turn it has the absolute error of `1 − cos x`.
+///
+/// ```
+/// use polhode::num::trig::sin_versine;
+/// let (_, versine) = sin_versine(1e-9); // ½ x², where 1 − cos x rounds to 0
+/// assert!((versine / 5e-19 - 1.0).abs() < 1e-15);
+/// ```
 #[inline]
 #[must_use]
 pub fn sin_versine(x: f64) -> (f64, f64) {
@@ -83,7 +95,7 @@ pub fn sin_versine_small(x: f64) -> (f64, f64) {
 
 /// `sin x / x` and `cos x` of the angle x with the square `z`, x ≤ [`SMALL`], by the same polynomials.
 #[inline(always)]
-pub fn sinc_cos_small(z: f64) -> (f64, f64) {
+pub(crate) fn sinc_cos_small(z: f64) -> (f64, f64) {
     (1.0 + z * sine_small(z), cos_small(z))
 }
 
@@ -149,6 +161,11 @@ fn polynomial(z: f64, z2: f64, c: [f64; 6]) -> f64 {
 /// Sine and cosine of 2π (x + low), |x| ≤ ½, |low| ≤ 2⁻¹⁰: only x is reduced.
 ///
 /// Quarter turns are taken off exactly, so a phase counted in turns meets no rounded π before it is small.
+///
+/// ```
+/// use polhode::num::trig::sin_cos_turns;
+/// assert_eq!(sin_cos_turns(0.25, 0.0), (1.0, 0.0));
+/// ```
 #[inline(always)]
 #[must_use]
 pub fn sin_cos_turns(x: f64, low: f64) -> (f64, f64) {

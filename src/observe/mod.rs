@@ -1,5 +1,4 @@
-//! Invariants in double-double, their largest errors over every step, and the statistics of secular drift. Takes states and
-//! series only.
+//! Invariants in double-double, their largest errors over every step, and the statistics of secular drift.
 
 mod circle;
 mod drift;

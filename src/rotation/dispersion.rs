@@ -1,7 +1,6 @@
 //! The mean of many attitudes and how far they are spread about it.
 
 use super::{Quat, Vec3, rotation_angle};
-use crate::num::Precise;
 use crate::num::eigen::eigen;
 
 /// Terms of one partial sum; of many numbers the sum of partial sums rounds less.
@@ -60,7 +59,7 @@ impl Dispersion {
         angles.sort_unstable_by(f64::total_cmp);
 
         let moments = sum(attitudes, |q| {
-            let Vec3([x, y, z]) = rotation_vector(mean, *q);
+            let Vec3([x, y, z]) = (*q * mean.conjugate()).logarithm();
             [x * x, x * y, x * z, y * y, y * z, z * z]
         });
         let [xx, xy, xz, yy, yz, zz] = moments.map(|sum| sum / count);
@@ -117,17 +116,6 @@ impl Dispersion {
     pub fn axes(&self) -> [Vec3<f64>; 3] {
         self.axes
     }
-}
-
-/// The rotation vector, axes of space, of the turn that takes attitude `a` to attitude `b`; no longer than π.
-fn rotation_vector(a: Quat<f64>, b: Quat<f64>) -> Vec3<f64> {
-    let turn = b * a.conjugate();
-    let sine = turn.v.norm();
-    if sine == 0.0 {
-        return Vec3::zero();
-    }
-    let sign = if turn.w < 0.0 { -1.0 } else { 1.0 };
-    turn.v * (2.0 * sign * Precise::atan2(sine, turn.w.abs()) / sine)
 }
 
 /// Sums of the terms of each item, in a fixed order.

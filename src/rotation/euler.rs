@@ -30,8 +30,18 @@ const LOCK: f64 = f64::EPSILON;
 pub struct EulerSequence([usize; 3]);
 
 /// Three angles, rad, in the order of the sequence.
+///
+/// ```
+/// use polhode::rotation::EulerSequence;
+/// let yaw_pitch_roll: EulerSequence = "zyx".parse()?;
+/// let upright = yaw_pitch_roll.attitude([0.3, core::f64::consts::FRAC_PI_2, 0.2]);
+/// let found = yaw_pitch_roll.angles(upright);
+/// assert!(found.locked && found.angles[2] == 0.0);
+/// # Ok::<(), polhode::rotation::EulerSequenceError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[non_exhaustive]
 pub struct EulerAngles {
     /// The outer two in (−π, π], the middle one in [0, π] if the outer axes agree, else in [−π/2, π/2].
     pub angles: [f64; 3],

@@ -15,7 +15,6 @@ pub use celestial::CelestialFrame;
 pub use directions::Directions;
 pub use dispersion::Dispersion;
 pub use distance::rotation_angle;
-pub(crate) use distance::{rotation_vector, turn_by};
 pub use euler::{EulerAngles, EulerSequence, EulerSequenceError};
 pub use quaternion::Quat;
 pub(crate) use vec3::AXES;

@@ -78,6 +78,22 @@ pub fn halvings(
 ///
 /// # Errors
 /// As [`halvings`].
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::body::Body;
+/// use polhode::inertia::Inertia;
+/// use polhode::method::method;
+/// use polhode::run::{halvings_against, observed_order};
+/// let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0])?);
+/// // a spin of 1 rad/s about the third axis, and where it is after 1 s
+/// let turned = |angle: f64| body.state(UnitQuaternion::from_scaled_axis(Vector3::z() * angle), Vector3::z());
+/// let (start, end) = (body.enter(&turned(0.0)?)?, body.enter(&turned(1.0)?)?);
+/// let errors = halvings_against(&end, &method("rk4")?, &body, &start, 1.0, 3..6)?;
+/// let attitude: Vec<_> = errors.iter().map(|error| (error.h, error.attitude_error)).collect();
+/// assert!(observed_order(&attitude).is_some_and(|order| (order - 4.0).abs() < 0.1));
+/// # Ok::<(), polhode::Error>(())
+/// ```
 pub fn halvings_against(
     exact: &Point<Dd>,
     method: &dyn AnyMethod,
@@ -107,6 +123,13 @@ pub fn halvings_against(
 }
 
 /// The slope of log error against log h over the last two of the pairs (h, error); `None` with fewer, or with an error of 0.
+///
+/// ```
+/// use polhode::run::observed_order;
+/// let quartered = observed_order(&[(0.5, 1e-2), (0.25, 2.5e-3)]);
+/// assert!(quartered.is_some_and(|order| (order - 2.0).abs() < 1e-14));
+/// assert_eq!(observed_order(&[(0.5, 1e-2)]), None);
+/// ```
 #[must_use]
 pub fn observed_order(errors: &[(f64, f64)]) -> Option<f64> {
     let [.., (h0, e0), (h1, e1)] = errors else { return None };

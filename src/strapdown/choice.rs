@@ -17,6 +17,18 @@ const LOOKED_AT: usize = 1000;
 ///
 /// # Errors
 /// As [`Budgeted`]; lists of different lengths, no samples.
+///
+/// ```
+/// use nalgebra::{UnitQuaternion, Vector3};
+/// use polhode::strapdown::{Kind, Rule, Sensor, attitudes};
+/// let times: Vec<f64> = (0..=10).map(|k| 0.1 * f64::from(k)).collect();
+/// let (rates, start) = (vec![Vector3::z(); times.len()], UnitQuaternion::identity());
+/// let found = attitudes(&times, &rates, Kind::Rate, Rule::magnus(4, 4)?, start, Sensor::default())?;
+/// let last = found.last().ok_or("there are samples")?;
+/// // 1 s at 1 rad/s
+/// assert!(last.error(UnitQuaternion::from_scaled_axis(Vector3::z())).norm() < 1e-14);
+/// # Ok::<(), polhode::Error>(())
+/// ```
 pub fn attitudes(
     times: &[f64],
     readings: &[Vector3<f64>],

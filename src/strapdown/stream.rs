@@ -10,6 +10,7 @@ use crate::rotation::{Quat, Vec3};
 
 /// An attitude and its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Stamped<S> {
     /// Time of the sample, s.
     pub time: S,

@@ -265,12 +265,18 @@ fn time_of_day(text: &str) -> Result<Clock, &'static str> {
 /// `+01:00`, `-0530` or `+02` in seconds.
 fn offset(text: &str) -> Result<i64, &'static str> {
     let (sign, digits) = text.split_at(1);
-    let digits = digits.replace(':', "");
-    let number = digits.bytes().all(|b| b.is_ascii_digit()).then(|| digits.parse::<i64>().ok()).flatten();
-    let (hours, minutes) = match (number, digits.len()) {
-        (Some(hours), 1 | 2) => (hours, 0),
-        (Some(both), 4) => (both / 100, both % 100),
-        _ => return Err("an offset is written +hh:mm"),
+    let (hours, minutes) = match digits.split_once(':') {
+        Some(both) => both,
+        None if digits.len() == 4 && digits.is_ascii() => digits.split_at(2),
+        None => (digits, "00"),
+    };
+    // of fewer digits it would be open which of them are hours
+    let of_two = |digits: &str| {
+        let is_pair = digits.len() == 2 && digits.bytes().all(|b| b.is_ascii_digit());
+        digits.parse::<i64>().ok().filter(|_| is_pair)
+    };
+    let (Some(hours), Some(minutes)) = (of_two(hours), of_two(minutes)) else {
+        return Err("an offset is written +hh:mm, +hhmm or +hh");
     };
     if hours > 23 || minutes > 59 {
         return Err("the hours of an offset run to 23 and its minutes to 59");
@@ -317,6 +323,7 @@ mod tests {
             "22-Nov-2025 10:20:30.125",
             "2025-11-22T11:20:30.125+01:00",
             "2025-11-22 04:50:30.125 -0530",
+            "2025-11-22T12:20:30.125+02",
         ] {
             // leap seconds from 1972 on, with the first 10
             let leaps = if date(text).scale().is_some() { 27.0 } else { 0.0 };
@@ -343,7 +350,14 @@ mod tests {
             ("2016-12-31T23:59:61Z", "leap second"),
             ("2016-12-31T23:59:59 GMT", "time scale"),
             ("2016-12-31T23:59:59Z TDB", "Z and offsets"),
-            ("2025-04-01T10:00+1:2:3x", "offset"),
+            ("2025-04-01T10:00+1:2:3x", "offset is written"),
+            ("2025-04-01T10:00+1:2", "offset is written"),
+            ("2025-04-01T10:00+1:02", "offset is written"),
+            ("2025-04-01T10:00+01:2", "offset is written"),
+            ("2025-04-01T10:00+1", "offset is written"),
+            ("2025-04-01T10:00-530", "offset is written"),
+            ("2025-04-01T10:00+01:0:0", "offset is written"),
+            ("2025-04-01T10:00+0é0", "offset is written"),
             ("2025-04-01T10:00+99:99", "hours of an offset"),
             ("2025-04-01T10:00-24", "hours of an offset"),
             ("2025-04-01T10:00+0160", "hours of an offset"),

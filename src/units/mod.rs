@@ -9,6 +9,11 @@ pub use time_scale::TimeScale;
 use crate::num::Shown;
 
 /// Unit of a time column.
+///
+/// ```
+/// use polhode::units::TimeUnit;
+/// assert_eq!(TimeUnit::named("ms").map(|unit| unit.seconds(250.0)), Some(0.25));
+/// ```
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum TimeUnit {
@@ -31,6 +36,13 @@ pub enum TimeUnit {
 }
 
 /// Unit of an angular velocity.
+///
+/// ```
+/// use polhode::units::RateUnit;
+/// let rpm = RateUnit::named("rpm").ok_or("no unit")?;
+/// assert!((rpm.radians_per_second(30.0) - core::f64::consts::PI).abs() < 1e-14);
+/// # Ok::<(), &str>(())
+/// ```
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum RateUnit {

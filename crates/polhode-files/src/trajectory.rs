@@ -224,6 +224,7 @@ fn claims(table: &Table) -> Result<Convention, TableError> {
             }
             _ => {}
         }
+        claims.attitude = claims.attitude.or(attitude.direction);
     }
     check_units(table)?;
     claims.omega_frame = body.rates.as_ref().and_then(|rates| rates.frame);

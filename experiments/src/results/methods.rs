@@ -11,7 +11,8 @@ pub(super) const PAGE: &str = "docs/methods.md";
 
 const HEAD: &str = "<!-- made by `polhode experiment publish`; edit the methods, and not this page -->
 
-What `polhode methods` lists, with what was measured. A name is taken by [`method()`](crate::method()) and by `--method`; it may have an
+The catalogue, with what was measured. `polhode methods` lists two methods more: `linearly-implicit-euler`, the step of MuJoCo's `implicit`,
+and `dissipating:LOSS`, for a body with inner friction. A name is taken by [`method()`](crate::method()) and by `--method`; it may have an
 argument and a scheme, `BASE[:ARGUMENT][@SCHEME][+phase]`, as in `lie-poisson:321@kahan-li-8`. `polhode methods --schemes` lists the schemes.
 `no-squish` is another name of `lie-poisson:321`, `kick-drift:4` one of `kick-drift@suzuki-4`.
 

@@ -5,15 +5,12 @@ use thiserror::Error;
 
 use super::motion::FreeMotion;
 use crate::body::Body;
+#[cfg(any(test, feature = "random"))]
+use crate::body::{AttitudeSpread, Population};
 use crate::flow::{DerivativeError, TurnAxes};
 use crate::inertia::Inertia;
 use crate::num::Covariance;
-use crate::rotation::{Quat, rotation_angle, turn_by};
-#[cfg(any(test, feature = "random"))]
-use crate::{
-    body::{AttitudeSpread, Population},
-    rotation::Vec3,
-};
+use crate::rotation::{Quat, Vec3, rotation_angle};
 
 /// Radians of the turn in one panel of the integral of the process noise.
 const PANEL: f64 = 1.0;
@@ -42,6 +39,7 @@ pub struct StartCovariance {
 /// How uncertain a state is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[must_use]
+#[non_exhaustive]
 pub struct StateCovariance {
     /// Of rotation vector (rad) and angular velocity (body axes, rad/s), to first order.
     pub state: Matrix6<f64>,
@@ -109,7 +107,7 @@ impl StartCovariance {
                 let (q0, turn) = match attitude {
                     AttitudeSpread::Fixed(q0) => (*q0, Covariance::zero()),
                     AttitudeSpread::Near { mean, turn } => {
-                        (*mean * turn_by(Vec3(turn.mean())), turn.covariance())
+                        (*mean * Quat::exponential(Vec3(turn.mean())), turn.covariance())
                     }
                     AttitudeSpread::Uniform => return None,
                 };
@@ -245,7 +243,7 @@ impl FreeMotion {
 
 /// The attitude `q`, turned by a rotation vector in the `axes`.
 fn turned(q: Quat<f64>, by: Vector3<f64>, axes: TurnAxes) -> Quat<f64> {
-    let turn = turn_by(by.into());
+    let turn = Quat::exponential(Vec3::from(by));
     match axes {
         TurnAxes::Space => turn * q,
         TurnAxes::Body => q * turn,

@@ -8,7 +8,12 @@ use crate::method::{
     VariationalCayley,
 };
 
-/// Every method, in the order in which tables show them; of those that take an argument or a scheme the usual ones.
+/// The methods that tables show, in their order; of those that take an argument or a scheme the usual ones.
+///
+/// ```
+/// use polhode::method::{Claimed, catalogue, method};
+/// assert!(catalogue().iter().all(|known| method(&known.name()).is_ok()));
+/// ```
 #[must_use]
 pub fn catalogue() -> Vec<Box<dyn AnyMethod>> {
     let mut all = without_projections();

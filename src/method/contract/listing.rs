@@ -40,7 +40,7 @@ const CORRECTED: Listing = Listing {
 };
 
 /// Base of the name, family, file, formula; `exact` is the closed form.
-const LISTINGS: [(&str, &str, &str, &str); 30] = [
+const LISTINGS: [(&str, &str, &str, &str); 32] = [
     (
         "exact",
         "closed form",
@@ -173,6 +173,18 @@ const LISTINGS: [(&str, &str, &str, &str); 30] = [
         "simulator",
         "src/method/mujoco_rk4.rs",
         "m' by rk4; q' = q exp(h/6 (k₁ + 2k₂ + 2k₃ + k₄)), kᵢ = ωᵢ + uᵢ × ωᵢ/2 + uᵢ × (uᵢ × ωᵢ)/12",
+    ),
+    (
+        "linearly-implicit-euler",
+        "simulator",
+        "src/method/linearly_implicit_euler.rs",
+        "m' = m + h k, (1 − h J) k = m × ω + τ, J δ = δ × ω + m × I⁻¹δ; q' = q exp(h ω')",
+    ),
+    (
+        "dissipating",
+        "inner friction",
+        "src/method/dissipating.rs",
+        "D(h/2) F(h) D(h/2), D the exact free flow, F the exact flow of the friction",
     ),
     (
         "lie-newmark",

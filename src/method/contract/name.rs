@@ -16,9 +16,9 @@ use crate::num::Dd;
 /// The method called `name`: `base`, `base:argument`, `base@scheme` or `base:argument@scheme`, as in
 /// `lie-poisson:321@kahan-li-8`, each with or without `+phase` behind it.
 ///
-/// Bases are those of the [catalogue](super::catalogue()), schemes those of [`schemes::ALL`](crate::method::schemes::ALL). `lie-poisson` takes an
-/// order of axes as its argument, `two-turn` its two axes, `taylor` an order (a step is one series) or a tolerance, `dop853`
-/// and `tsit5` a tolerance;
+/// Bases are those of the [catalogue](super::catalogue()) and `linearly-implicit-euler`, schemes those of
+/// [`schemes::ALL`](crate::method::schemes::ALL). `lie-poisson` takes an order of axes as its argument, `two-turn` its two axes,
+/// `dmv` and `gauss` an order, `taylor` an order (a step is one series) or a tolerance, `dop853` and `tsit5` a tolerance;
 /// `kick-drift:2` and `kick-drift:4` are other names of `kick-drift` and `kick-drift@suzuki-4`, `no-squish` one of
 /// `lie-poisson:321`: that is the method of Miller et al., J. Chem. Phys. 116 (2002) 8649, which molecular dynamics programs
 /// write in quaternions and their momenta. `+phase` takes the [phase error](PhaseCorrected) back at output.

@@ -44,6 +44,7 @@ pub struct PreprocessedDmv {
 #[error(
     "there is no discrete Moser-Veselov map of order {order}; there are the even orders from 4 to {LARGEST_ORDER}, and rattle of order 2"
 )]
+#[non_exhaustive]
 pub struct DmvOrderError {
     /// What was asked for.
     pub order: u32,

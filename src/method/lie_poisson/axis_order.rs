@@ -9,6 +9,13 @@ use crate::method::solve::modified_energy::{ModifiedEnergy, Orbit, PhaseErrorRat
 use crate::rotation::Vec3;
 
 /// An order of the three axes, outermost turn first: `321` is Φ = R3(h/2) R2(h/2) R1(h) R2(h/2) R3(h/2).
+///
+/// ```
+/// use polhode::method::AxisOrder;
+/// let order: AxisOrder = "321".parse()?;
+/// assert_eq!(order.axes(), [2, 1, 0]);
+/// # Ok::<(), polhode::method::AxisOrderError>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AxisOrder([usize; 3]);
 

@@ -45,6 +45,7 @@ pub struct Taylor {
 /// There is no such order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("there is no Taylor method of order {order}; there are the orders from {} to {}", ORDERS.start(), ORDERS.end())]
+#[non_exhaustive]
 pub struct TaylorOrderError {
     /// What was asked for.
     pub order: u32,

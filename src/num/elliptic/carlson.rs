@@ -87,6 +87,11 @@ fn zeros<S: Precise>(arguments: [S; 3]) -> usize {
 }
 
 /// R_F(x, y, z) = ½ ∫₀^∞ dt / √((t+x)(t+y)(t+z)) for x, y, z ≥ 0; infinite when two of them are zero.
+///
+/// ```
+/// use polhode::num::elliptic::r_f;
+/// assert!((r_f(0.0, 1.0, 1.0) - core::f64::consts::FRAC_PI_2).abs() < 1e-14);
+/// ```
 pub fn r_f<S: Precise>(mut x: S, mut y: S, mut z: S) -> S {
     let diverges = zeros([x, y, z]) > 1;
     if diverges || !ordinary([x, y, z]) {
@@ -123,6 +128,11 @@ pub fn r_f<S: Precise>(mut x: S, mut y: S, mut z: S) -> S {
 }
 
 /// R_C(x, y) = R_F(x, y, y) for x ≥ 0 and y > 0; infinite at y = 0.
+///
+/// ```
+/// use polhode::num::elliptic::r_c;
+/// assert!((r_c(0.0, 1.0) - core::f64::consts::FRAC_PI_2).abs() < 1e-14);
+/// ```
 pub fn r_c<S: Precise>(x: S, y: S) -> S {
     let diverges = y == S::of(0.0);
     if diverges || !ordinary([x, y]) {
@@ -163,6 +173,11 @@ fn degenerate<S: Precise>(mut x: S, mut y: S) -> S {
 /// are zero, or when no double holds the value.
 ///
 /// Every step adds a positive R_C(1, 2√p (p+λ)/d): unlike Carlson's 1 + δ/d² it does not cancel when p is small.
+///
+/// ```
+/// use polhode::num::elliptic::r_j;
+/// assert!((r_j(4.0, 4.0, 4.0, 4.0) - 0.125).abs() < 1e-15); // of equal arguments x^(−3/2)
+/// ```
 pub fn r_j<S: Precise>(mut x: S, mut y: S, mut z: S, mut p: S) -> S {
     let zero = S::of(0.0);
     let diverges = p == zero || zeros([x, y, z]) > 1;
@@ -200,6 +215,11 @@ pub fn r_j<S: Precise>(mut x: S, mut y: S, mut z: S, mut p: S) -> S {
 
 /// R_D(x, y, z) = R_J(x, y, z, z) for x, y, z ≥ 0; infinite when z or both of x and y are zero, or when no double holds
 /// the value.
+///
+/// ```
+/// use polhode::num::elliptic::r_d;
+/// assert!((r_d(4.0, 4.0, 4.0) - 0.125).abs() < 1e-15); // of equal arguments x^(−3/2)
+/// ```
 pub fn r_d<S: Precise>(mut x: S, mut y: S, mut z: S) -> S {
     let zero = S::of(0.0);
     let diverges = z == zero || (x == zero && y == zero);

@@ -12,6 +12,14 @@ const PASSES: usize = 10;
 const STEPS: usize = 20;
 
 /// A modulus, given by m1 = k'², with its arithmetic-geometric mean: computed once, then used for any argument.
+///
+/// ```
+/// use polhode::num::elliptic::Modulus;
+/// let circle = Modulus::new(1.0); // m = 0: sine, cosine and 1
+/// let (sn, cn, dn) = circle.sn_cn_dn(0.5);
+/// assert!((sn - libm::sin(0.5)).abs() < 1e-15 && (cn - libm::cos(0.5)).abs() < 1e-15 && dn == 1.0);
+/// assert_eq!(circle.quarter_period(), core::f64::consts::FRAC_PI_2);
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Modulus<S> {
     complement: S,
@@ -42,7 +50,7 @@ impl<S: Precise> Modulus<S> {
 
     /// k' = √m1.
     #[inline]
-    pub fn complementary_modulus(&self) -> S {
+    pub(crate) fn complementary_modulus(&self) -> S {
         self.ladder[0].1
     }
 
@@ -143,6 +151,12 @@ pub fn jacobi<S: Precise>(u: S, m1: S) -> (S, S, S) {
 ///
 /// Taken from the pair and not from an angle, it keeps all digits at both ends: u = sn R_F(cn², m1 + m cn², 1).
 /// Infinite at sn = ±1 for m1 = 0.
+///
+/// ```
+/// use polhode::num::elliptic::incomplete;
+/// let angle = incomplete(0.6, 0.8, 0.0, 1.0); // m = 0: the angle itself
+/// assert!((angle - libm::asin(0.6)).abs() < 1e-15);
+/// ```
 pub fn incomplete<S: Precise>(sn: S, cn: S, m: S, m1: S) -> S {
     sn * r_f(cn * cn, m1 + m * cn * cn, S::of(1.0))
 }

@@ -9,12 +9,15 @@ use crate::flags::table::Order;
 
 impl Attitude {
     pub(super) fn table(&self) -> Table {
-        let mut parts = [
-            ("q_w", "attitude, scalar part"),
-            ("q_x", "attitude, x"),
-            ("q_y", "attitude, y"),
-            ("q_z", "attitude, z"),
-        ];
+        // the names by which files are read in this direction again
+        let [w, x, y, z] = match self.direction {
+            Direction::BodyToSpace => ["q_w", "q_x", "q_y", "q_z"],
+            Direction::SpaceToBody => {
+                ["q_space_to_body_w", "q_space_to_body_x", "q_space_to_body_y", "q_space_to_body_z"]
+            }
+        };
+        let mut parts =
+            [(w, "attitude, scalar part"), (x, "attitude, x"), (y, "attitude, y"), (z, "attitude, z")];
         if self.quaternion == Order::Xyzw {
             parts.rotate_left(1);
         }

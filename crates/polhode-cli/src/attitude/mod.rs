@@ -76,7 +76,8 @@ pub(crate) struct Attitude {
     /// Order of the columns of the quaternion
     #[arg(long, value_enum, default_value_t = Order::Wxyz, help_heading = "Output")]
     quaternion: Order,
-    /// What an attitude takes where: body components to space, or space components to body (the quaternion of JPL's product)
+    /// What an attitude takes where: body components to space, or space components to body (the quaternion of JPL's product), in columns
+    /// q_space_to_body_w, ..., whose names every command reads
     #[arg(long, value_enum, default_value_t = Direction::BodyToSpace, help_heading = "Output")]
     direction: Direction,
     /// How rows are printed: table on a terminal, csv otherwise

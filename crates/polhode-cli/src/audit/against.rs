@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::Vector3;
-use polhode::audit::{Reading, Trajectory, Verdict};
+use polhode::audit::{Direction, Reading, Trajectory, Verdict};
 use polhode::body::Body;
 use polhode::inertia::Inertia;
 use polhode::rotation::rotation_angle;
@@ -36,6 +36,9 @@ impl Golden {
         let refused = |value: &str, rule: &str| {
             Error::input(&name, value, rule, "write golden trajectories by `polhode audit --golden DIR`")
         };
+        if found.counts_steps {
+            return Err(refused("", "counts steps of a length that it does not tell"));
+        }
         let line = |key: &str| -> Result<Option<[f64; 3]>, Error> {
             let text =
                 found.comments.iter().find_map(|line| line.strip_prefix(key)?.trim().strip_prefix(':'));
@@ -60,7 +63,7 @@ impl Golden {
         };
         let mut reading = Reading::default();
         reading.quaternion = claims.quaternion;
-        reading.attitude = Some(polhode::audit::Direction::BodyToSpace);
+        reading.attitude = Some(claims.attitude.unwrap_or(Direction::BodyToSpace));
         Ok(Self { name, rows, reading, body })
     }
 

@@ -110,6 +110,16 @@ impl PoseArguments {
         Chosen::Rates { beside }
     }
 
+    /// Refuses a flag that says how attitudes are written where none are read, not even `beside` the rates.
+    pub(super) fn check_stated(&self, beside: &[PathBuf]) -> Result<(), Error> {
+        let Some((flag, value)) = self.convention.given().filter(|_| beside.is_empty()) else {
+            return Ok(());
+        };
+        let rule = "says how attitudes are written, and the rates are fitted";
+        let remedy = "leave it out, or fit the attitudes: --from attitudes";
+        Err(Error::input(flag, &value, rule, remedy))
+    }
+
     /// Refuses files whose rates, by the attitudes beside them, are those about the axes of space.
     pub(super) fn check_frames(&self, beside: &[PathBuf], reading: &RecordArguments) -> Result<(), Error> {
         for path in beside {

@@ -157,6 +157,9 @@ impl Fit {
             Some(read) => (read.poses.rates(), read.read_as.clone()),
             None => self.reading.record(&self.data, self.wheel.momentum())?,
         };
+        if let Chosen::Rates { beside } = &chosen {
+            self.poses.check_stated(beside)?;
+        }
         let as_read = AsRead(files);
         chosen.tell();
         let settings = self.settings()?;

@@ -45,6 +45,11 @@ enum Product {
     Jpl,
 }
 
+/// A value as it is typed.
+fn typed(value: impl ValueEnum) -> String {
+    value.to_possible_value().map_or(String::new(), |value| value.get_name().to_string())
+}
+
 fn angle(text: &str) -> Result<AngleUnit, String> {
     AngleUnit::named(text).ok_or_else(|| format!("'{text}' is no unit of angles here; write rad or deg"))
 }
@@ -85,6 +90,18 @@ pub(crate) fn check_matrices(matrices: &[[f64; 9]], times: &[f64], name: &str) -
 }
 
 impl AttitudeArguments {
+    /// The first flag that is given, and its value.
+    pub(crate) fn given(&self) -> Option<(&'static str, String)> {
+        let order = self.quaternion.map(|order| ("--quaternion", typed(order)));
+        let direction = self.attitude.map(|to| ("--attitude", typed(to)));
+        let euler = self.euler.map(|(sequence, turns)| {
+            let behind = if turns == Turns::Extrinsic { ":extrinsic" } else { "" };
+            ("--euler", format!("{sequence}{behind}"))
+        });
+        let unit = self.angle_unit.map(|unit| ("--angle-unit", unit.to_string()));
+        order.or(direction).or(euler).or(unit)
+    }
+
     /// Angles in columns of the names roll, pitch and yaw, in the order of the sequence that is stated.
     ///
     /// # Errors

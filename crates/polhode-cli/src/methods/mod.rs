@@ -7,9 +7,10 @@ use std::path::PathBuf;
 use clap::Args;
 use polhode::method::schemes::{STRANG, scheme};
 use polhode::method::{
-    AnyMethod, Claimed, Dissipating, Splitting, ToleranceError, UnknownMethod, catalogue, method,
+    AnyMethod, Claimed, Dissipating, LinearlyImplicitEuler, Splitting, ToleranceError, UnknownMethod,
+    catalogue, method,
 };
-use polhode_experiments::methods::{schemes, table};
+use polhode_experiments::methods::{listed, schemes};
 use polhode_files::error::Error;
 use polhode_files::numbers::number;
 use polhode_pages::output::emit;
@@ -44,7 +45,7 @@ impl Methods {
             emit(&check::written(&report, format), self.out.as_deref())?;
             return check::judged(&report);
         }
-        let table = if self.schemes { schemes() } else { table() };
+        let table = if self.schemes { schemes() } else { listed() };
         emit(&format.write(&table), self.out.as_deref())
     }
 }
@@ -74,9 +75,17 @@ pub(crate) fn unknown(flag: &str, error: UnknownMethod) -> Error {
         UnknownMethod::Name { name } if name == "exact" => {
             Error::input(flag, &name, "the exact motion takes no steps", "name a method of `polhode methods`")
         }
+        UnknownMethod::Name { name } if name == "dissipating" => {
+            Error::input(flag, &name, "has no loss", "write it behind the name, as in dissipating:1e-3")
+        }
+        UnknownMethod::Name { name } if name.starts_with("dissipating:") => {
+            let rule = "moves a body with inner friction, and here the body is rigid";
+            Error::input(flag, &name, rule, "`polhode propagate --method` takes it")
+        }
         UnknownMethod::Name { name } => {
             let mut known: Vec<String> = catalogue().iter().map(|method| method.name()).collect();
             known.insert(0, "exact".into());
+            known.push(LinearlyImplicitEuler.name());
             Error::unknown_name(flag, "method", &name, known.iter().map(String::as_str))
         }
         UnknownMethod::Argument { name, rule } => {
@@ -109,6 +118,9 @@ pub(crate) enum Unusable {
 
 /// The method `name` at a tolerance that stands beside its name.
 pub(crate) fn at_tolerance(name: &str, tolerance: f64) -> Result<Box<dyn AnyMethod>, Unusable> {
+    if name.starts_with("dissipating:") {
+        return Err(Unusable::FixedSteps);
+    }
     let found = method(name).map_err(Unusable::Unknown)?;
     match found.with_tolerance(tolerance) {
         Err(ToleranceError::FixedSteps { .. }) => Err(Unusable::FixedSteps),

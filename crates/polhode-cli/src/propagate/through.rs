@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::{Quaternion, UnitQuaternion};
-use polhode::audit::{Attitudes, QuaternionOrder};
+use polhode::audit::{Attitudes, Direction, QuaternionOrder};
 use polhode::body::{Body, Problem, Time};
 use polhode::flow::{Interpolation, ThroughError};
 use polhode_files::error::{Error, tell, warn};
@@ -100,7 +100,11 @@ fn read(file: &Path) -> Result<Vec<(f64, UnitQuaternion<f64>)>, Error> {
     if found.claims.quaternion != Some(QuaternionOrder::ScalarFirst) {
         return refused("leaves open where the scalar stands", "name the columns q_w, q_x, q_y, q_z");
     }
-    let unit = |[w, x, y, z]: [f64; 4]| UnitQuaternion::try_new(Quaternion::new(w, x, y, z), 0.0);
+    let is_inverse = found.claims.attitude == Some(Direction::SpaceToBody);
+    let unit = |[w, x, y, z]: [f64; 4]| {
+        let unit = UnitQuaternion::try_new(Quaternion::new(w, x, y, z), 0.0)?;
+        Some(if is_inverse { unit.inverse() } else { unit })
+    };
     let all: Option<Vec<_>> = rows.times.iter().zip(attitudes).map(|(t, q)| Some((*t, unit(q)?))).collect();
     match all {
         Some(all) => Ok(all),

@@ -66,6 +66,20 @@ fn counts_of_steps_are_no_times() {
 }
 
 #[test]
+fn a_golden_trajectory_that_counts_steps_is_refused() {
+    let scratch = Scratch::new("heard-golden");
+    let columns = "q_w,q_x,q_y,q_z,omega_body_x,omega_body_y,omega_body_z";
+    let record = written(&scratch, "run.csv", WITH_RATES, &format!("t,{columns}"));
+    let golden = |name: &str, time: &str| {
+        written(&scratch, name, WITH_RATES, &format!("# moments: 1,2,3\n{time},{columns}"))
+    };
+    let of_times = golden("golden.csv", "t");
+    assert_eq!(run(&format!("audit {record} --against {of_times}")).code, 0);
+    let of_steps = golden("steps.csv", "timestep");
+    refused(&format!("audit {record} --against {of_steps}"), &["steps.csv", "counts steps"]);
+}
+
+#[test]
 fn a_unit_that_has_two_meanings_is_refused() {
     let scratch = Scratch::new("heard-rps");
     let file = written(&scratch, "rps.csv", "t,omega", "t,wx (rps),wy (rps),wz (rps)");
@@ -140,6 +154,24 @@ fn what_a_fit_cannot_use_or_write_is_refused() {
     let poses = written(&scratch, "poses.csv", "t,q", "t,q_w,q_x,q_y,q_z");
     refused(&format!("fit {poses} --axes x,-y,z"), &["--axes", "attitudes are fitted"]);
     refused(&format!("fit {rates} --attitude-noise 0.1"), &["--attitude-noise", "rates are fitted"]);
+    let flags = [
+        "--euler zyx",
+        "--euler zyx:extrinsic",
+        "--quaternion xyzw",
+        "--angle-unit deg",
+        "--attitude space-to-body",
+    ];
+    for flag in flags {
+        let (name, value) = flag.split_once(' ').unwrap();
+        let says = format!("{name}: '{value}': says how attitudes are written, and the rates are fitted");
+        refused(&format!("fit {rates} {flag}"), &[says.as_str(), "--from attitudes"]);
+    }
+    // which is of use where there are attitudes beside the rates
+    let numbered = "t,q0,q1,q2,q3,wx (rad/s),wy (rad/s),wz (rad/s)";
+    let both = written(&scratch, "both.csv", WITH_RATES, numbered);
+    let answer = run(&format!("fit {both} --quaternion wxyz"));
+    assert!(!answer.err.contains("--quaternion"), "{answer:?}");
+    refused(&format!("fit {both} --from rates --quaternion wxyz"), &["--quaternion", "the rates are fitted"]);
     let body = scratch.file("body.json", r#"{"inertia":[[1,0,0],[0,2,0],[0,0,2.5]]}"#);
     for flag in ["--report a.html", "--residuals a.csv", "--figure a.svg"] {
         let line = format!("fit {rates} --calibrate-wheel 0,0,1 --body {body} {flag}");
@@ -210,4 +242,42 @@ fn the_unit_of_a_simulated_start_is_the_one_that_is_named() {
     assert_ne!(plain, turned);
     let first = |text: &str| text.lines().nth(1).unwrap().split(',').nth(1).unwrap().parse::<f64>().unwrap();
     assert!((first(&turned) / 5_f64.to_radians() - 1.0).abs() < 1e-12, "{turned}");
+}
+
+#[test]
+fn attitudes_from_space_to_body_say_so_in_their_names() {
+    let scratch = Scratch::new("heard-direction");
+    let rates = written(&scratch, "rates.csv", "t,omega", "t,wx (rad/s),wy (rad/s),wz (rad/s)");
+    let line = format!("attitude {rates} --start 1,0.2,0,0");
+    let names = "t,q_space_to_body_w,q_space_to_body_x,q_space_to_body_y,q_space_to_body_z,attitude_sigma";
+    for (flags, head, read) in [
+        ("", "t,q_w,q_x,q_y,q_z,attitude_sigma", "read as body to space"),
+        ("--direction space-to-body", names, "read as space to body"),
+    ] {
+        let file = scratch.0.join("written.csv").display().to_string();
+        assert_eq!(run(&format!("{line} {flags} --out {file}")).code, 0, "{flags}");
+        assert!(std::fs::read_to_string(&file).unwrap().starts_with(head), "{flags}");
+        let answer = run(&format!("attitude {rates} --against {file}"));
+        assert!(answer.code == 0 && answer.err.contains(read), "{answer:?}");
+        let errors = answer.out.lines().skip(1).map(|row| row.rsplit(',').next().unwrap().parse::<f64>());
+        let worst = errors.map(Result::unwrap).fold(0.0, f64::max);
+        assert!(worst < 1e-12, "{flags}: {worst}");
+    }
+    // other commands that read attitudes
+    let names = "t,q_space_to_body_w,q_space_to_body_x,q_space_to_body_y,q_space_to_body_z";
+    let inverse = |row: &[f64]| vec![row[0], row[1], -row[2], -row[3], -row[4]];
+    let inverse = made(&scratch, "inverse.csv", "t,q", names, inverse);
+    let poses = written(&scratch, "poses.csv", "t,q", "t,q_w,q_x,q_y,q_z");
+    let between = |file: &str| {
+        let text = std::fs::read_to_string(file).unwrap();
+        let few: Vec<&str> = text.lines().take(5).collect();
+        let few = scratch.file("few.csv", few.join("\n") + "\n");
+        run(&format!("propagate {BODY} --through {few} --every 0.05"))
+    };
+    let (found, expected) = (between(&inverse), between(&poses));
+    assert_eq!((found.code, found.out), (0, expected.out));
+    let header = format!("{names},omega_body_x,omega_body_y,omega_body_z");
+    let lie = written(&scratch, "lie.csv", WITH_RATES, &header);
+    let answer = run(&format!("audit {lie} {BODY}"));
+    assert!(answer.code == 1 && answer.err.contains("transposed"), "{answer:?}");
 }

@@ -1,6 +1,6 @@
 //! `polhode methods --check`: the laws of a method.
 
-use crate::harness::{output, refused};
+use crate::harness::{output, refused, run};
 
 #[test]
 fn the_claims_of_a_method_are_rows() {
@@ -34,4 +34,24 @@ fn what_cannot_be_checked_is_refused() {
     refused("methods --check rk4 --motion falling", &["--motion", "'falling'", "free, gravity"]);
     refused("methods --motion free", &["--check"]);
     refused("methods --check rk4 --schemes", &["--schemes"]);
+}
+
+#[test]
+fn every_method_that_a_run_takes_is_listed() {
+    let listed = output("methods");
+    let line = "propagate --moments 1,2,3 --omega 0.4,1,-0.3 --times 1 --step 0.1 --method";
+    for (name, typed) in [
+        ("linearly-implicit-euler", "linearly-implicit-euler"),
+        ("dissipating:LOSS", "dissipating:1e-3"),
+        ("rattle", "rattle"),
+    ] {
+        let rows = listed.lines().filter(|row| row.split(',').next() == Some(name));
+        assert_eq!(rows.count(), 1, "{name}");
+        assert_eq!(run(&format!("{line} {typed}")).code, 0, "{typed}");
+    }
+    refused("methods --check linearly-implicit-eular", &["did you mean 'linearly-implicit-euler'?"]);
+    refused("methods --check dissipating:1e-3", &["--check: 'dissipating:1e-3'", "inner friction"]);
+    refused(&format!("{line} dissipating"), &["--method: 'dissipating'", "dissipating:1e-3"]);
+    let tolerance = line.replace("--step 0.1", "--tolerance 1e-9");
+    refused(&format!("{tolerance} dissipating:1e-3"), &["--tolerance", "does not choose its steps"]);
 }

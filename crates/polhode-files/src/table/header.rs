@@ -1,11 +1,11 @@
 //! Which columns of a header hold which quantity.
 
-use polhode::audit::Frame;
+use polhode::audit::{Direction, Frame};
 use polhode::units::{RateUnit, TimeUnit};
 
 use super::flags::ColumnNames;
 use super::name::Name;
-use super::spellings::{ANGLE_ENDINGS, NO_ENDINGS, Quantity, RATE_ENDINGS, SPELLINGS, frame, is_id};
+use super::spellings::{ANGLE_ENDINGS, NO_ENDINGS, Quantity, RATE_ENDINGS, SPELLINGS, direction, frame, is_id};
 use crate::error::Rule;
 
 /// Columns of one quantity.
@@ -17,6 +17,8 @@ pub(crate) struct Group {
     pub(crate) units: Vec<Option<String>>,
     /// The axes that the names state.
     pub(crate) frame: Option<Frame>,
+    /// What an attitude takes where, as the names state it.
+    pub(crate) direction: Option<Direction>,
     /// The axes, from 0, that the names of Euler angles say they turn about: of roll, pitch and yaw x, y and z.
     pub(crate) angle_axes: Option<[usize; 3]>,
     /// The names without the component.
@@ -240,7 +242,8 @@ impl Group {
     /// Of columns whose names state nothing.
     pub(crate) fn of(quantity: Quantity, places: Vec<usize>) -> Self {
         let units = vec![None; places.len()];
-        Group { quantity, places, units, frame: None, angle_axes: None, stem: "", yields: false }
+        let (frame, direction, angle_axes) = (None, None, None);
+        Group { quantity, places, units, frame, direction, angle_axes, stem: "", yields: false }
     }
 }
 
@@ -313,10 +316,10 @@ fn groups(names: &[Name]) -> Result<Vec<Group>, Rule> {
                 }
                 let units =
                     places.iter().zip(&targets).map(|(&k, target)| names[k].unit_behind(target, endings));
-                let (units, frame) = (units.collect(), frame(stem));
+                let (units, frame, direction) = (units.collect(), frame(stem), direction(stem));
                 let (quantity, yields) = (spelling.quantity, spelling.yields);
                 let angle_axes = (targets[0] == "roll").then_some([0, 1, 2]);
-                found.push(Group { quantity, places, units, frame, angle_axes, stem, yields });
+                found.push(Group { quantity, places, units, frame, direction, angle_axes, stem, yields });
                 break;
             }
         }
@@ -435,6 +438,24 @@ mod tests {
             [(Quaternion, vec![1, 2, 3, 4]), (Rates, vec![8, 9, 10])]
         );
         assert_eq!(found("t,a,b"), []);
+    }
+
+    #[test]
+    fn directions_stand_in_names() {
+        for (stem, direction) in [
+            ("q", None),
+            ("q_body_to_space", Some(Direction::BodyToSpace)),
+            ("q_space_to_body", Some(Direction::SpaceToBody)),
+        ] {
+            let cells = ["w", "x", "y", "z"].map(|part| format!("{stem}_{part}"));
+            let header = Header::of(&cells, &ColumnNames::default(), true).unwrap();
+            let attitude = header.bodies[0].attitude.as_ref().unwrap();
+            assert_eq!(
+                (attitude.quantity, &attitude.places[..], attitude.direction),
+                (Quantity::Quaternion, &[0, 1, 2, 3][..], direction),
+                "{stem}"
+            );
+        }
     }
 
     #[test]

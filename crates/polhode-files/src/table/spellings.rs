@@ -1,6 +1,6 @@
 //! The table of spellings: how simulators, phones, loggers and flight controllers name their columns, and what a name implies.
 
-use polhode::audit::Frame;
+use polhode::audit::{Direction, Frame};
 
 /// What a group of columns holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,8 +50,9 @@ const ENTRIES: &str = "11 12 13 21 22 23 31 32 33|00 01 02 10 11 12 20 21 22|xx 
 /// Without a stem.
 const NONE: &str = "-";
 
-/// `qrs` is of EuRoC.
-const QUATERNION: &str = "q quat quaternion orientation attitude rotation rot qbn qib ep cquat cq qrs";
+/// `qrs` is of EuRoC; the last two say what the quaternion takes where.
+const QUATERNION: &str =
+    "q quat quaternion orientation attitude rotation rot qbn qib ep cquat cq qrs qbodytospace qspacetobody";
 const MATRIX: &str = "r rot rotmat rotation dcm matrix mat m a c bn";
 const EULER: &str = "phi theta psi|roll pitch yaw|alpha beta gamma";
 
@@ -122,6 +123,15 @@ pub(crate) fn frame(stem: &str) -> Option<Frame> {
         {
             Some(Frame::Body)
         }
+        _ => None,
+    }
+}
+
+/// What an attitude takes where, as a stem states it.
+pub(crate) fn direction(stem: &str) -> Option<Direction> {
+    match stem {
+        "qbodytospace" => Some(Direction::BodyToSpace),
+        "qspacetobody" => Some(Direction::SpaceToBody),
         _ => None,
     }
 }

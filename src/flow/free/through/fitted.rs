@@ -10,7 +10,7 @@ use crate::flow::TurnAxes;
 use crate::flow::free::FreeMotion;
 use crate::inertia::Inertia;
 use crate::num::Dd;
-use crate::rotation::{Quat, rotation_vector, turn_by};
+use crate::rotation::{Quat, Vec3};
 
 /// Iterations of Gauss and Newton at most.
 const ITERATIONS: u32 = 30;
@@ -24,6 +24,7 @@ const ROUNDING: f64 = 1e-28;
 /// The free motion that passes many attitudes as nearly as their noise allows.
 #[derive(Clone, Debug)]
 #[must_use]
+#[non_exhaustive]
 pub struct FittedMotion {
     /// The motion, whose t = 0 is the time of the first attitude.
     pub motion: FreeMotion,
@@ -104,7 +105,7 @@ impl Fit<'_> {
         for &(t, attitude) in &self.table[..count] {
             let found = motion.at_with_derivative(t - self.table[0].0).ok()?;
             let attitude: Quat<f64> = attitude.into();
-            let rest: Vector3<f64> = rotation_vector(attitude * found.state().attitude.conjugate()).into();
+            let rest: Vector3<f64> = (attitude * found.state().attitude.conjugate()).logarithm().into();
             let rows: Matrix3x6<f64> =
                 found.by_momentum(TurnAxes::Space).fixed_view::<3, 6>(0, 0).into_owned();
             sum += rest.norm_squared();
@@ -151,7 +152,8 @@ impl Fit<'_> {
         let start = self.motion.at(0.0).ok()?;
         let turn: Vector3<f64> = step.fixed_rows::<3>(0).into_owned();
         let momentum = start.momentum() + step.fixed_rows::<3>(3);
-        let state = State { attitude: turn_by(turn.into()) * start.attitude, momentum_body: momentum.into() };
+        let attitude = Quat::exponential(Vec3::from(turn)) * start.attitude;
+        let state = State { attitude, momentum_body: momentum.into() };
         let body = self.motion.body();
         let inside: Point<Dd> = body.enter(&state).ok()?;
         Some(FreeMotion::from_point(body.inertia(), inside))

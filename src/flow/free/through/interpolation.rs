@@ -7,7 +7,7 @@ use crate::body::State;
 use crate::flow::TimeError;
 use crate::flow::free::FreeMotion;
 use crate::inertia::Inertia;
-use crate::rotation::{Quat, rotation_angle, rotation_vector, turn_by};
+use crate::rotation::{Quat, rotation_angle};
 
 /// The exact motion between the attitudes of a table: from each to the next the free motion through both.
 ///
@@ -102,7 +102,7 @@ impl Interpolation {
         let state = self.pieces[n].motion.at(t - t0).map_err(outside)?;
         let share = (t - t0) / (t1 - t0);
         let (q0, q1): (Quat<f64>, Quat<f64>) = (q0.into(), q1.into());
-        let slerp = q0 * turn_by(rotation_vector(q0.conjugate() * q1) * share);
+        let slerp = q0 * Quat::exponential((q0.conjugate() * q1).logarithm() * share);
         Ok((state, rotation_angle(slerp, state.attitude)))
     }
 }

@@ -31,6 +31,7 @@ const ALONG: f64 = 1e-13;
 /// One free motion through two attitudes.
 #[derive(Clone, Debug)]
 #[must_use]
+#[non_exhaustive]
 pub struct Passage {
     /// The motion, whose t = 0 is the earlier of the two times.
     pub motion: FreeMotion,
@@ -49,6 +50,7 @@ pub struct Passage {
 /// All free motions through two attitudes up to a number of turns.
 #[derive(Clone, Debug)]
 #[must_use]
+#[non_exhaustive]
 pub struct Passages {
     /// In ascending order of their turns.
     pub list: Vec<Passage>,
