@@ -90,17 +90,7 @@ impl Banded {
     ///
     /// Source: Takahashi, Fagan, Chin 1973: Z = L⁻ᵀ D⁻¹ + (1 − Lᵀ) Z with unit L, from the last row up.
     pub(crate) fn inverse_band(&self) -> Banded {
-        let mut z = Banded::zeros(self.size, self.band);
-        for j in (0..self.size).rev() {
-            let last = (j + self.band).min(self.size - 1);
-            let column = self.column(j);
-            for i in (j..=last).rev() {
-                let sum: f64 = column[1..].iter().zip(j + 1..=last).map(|(l, k)| l * z.get(i, k)).sum();
-                let own = if i == j { 1.0 / column[0] } else { 0.0 };
-                z.add(i, j, (own - sum) / column[0]);
-            }
-        }
-        z
+        Banded { columns: inverse_band(&self.columns, self.pitch, self.band), ..*self }
     }
 }
 
@@ -266,6 +256,37 @@ fn forward(columns: &[f64], pitch: usize, band: usize, b: &mut [f64], width: usi
             }
         }
     }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
+fn inverse_band(columns: &[f64], pitch: usize, band: usize) -> Vec<f64> {
+    let (size, width) = (columns.len() / pitch, 2 * band + 1);
+    // each column with what stands above its diagonal too, so that it is added as a whole
+    let mut both = vec![0.0; size * width];
+    let (mut inverse, mut products) = (vec![0.0; columns.len()], vec![0.0; band]);
+    for j in (0..size).rev() {
+        let (column, after) = (&columns[j * pitch..][..pitch], band.min(size - 1 - j));
+        products.fill(0.0);
+        for k in 0..after {
+            let l = column[1 + k];
+            let other = &both[(j + 1 + k) * width + band - k..][..band];
+            for (sum, entry) in products.iter_mut().zip(other) {
+                *sum += l * entry;
+            }
+        }
+        let mut along = 0.0;
+        for (k, product) in products.iter().enumerate().take(after) {
+            let entry = -product / column[0];
+            along += column[1 + k] * entry;
+            inverse[j * pitch + 1 + k] = entry;
+            both[j * width + band + 1 + k] = entry;
+            both[(j + 1 + k) * width + band - 1 - k] = entry;
+        }
+        let entry = (1.0 / column[0] - along) / column[0];
+        inverse[j * pitch] = entry;
+        both[j * width + band] = entry;
+    }
+    inverse
 }
 
 /// Pivots that are taken off the columns after them at once.
