@@ -60,7 +60,10 @@ fn stepped(near: Levels, first: Search<'_>, second: Search<'_>) -> (Option<Found
     let [none, a, b, c, other_a, other_b, other_c] = together(asked);
     let cost = |found: Option<Found>| found.map_or(f64::INFINITY, |found| found.cost);
     let next = |costs: [Option<Found>; 3]| unit * libm::pow(10.0, nearer(costs.map(cost), middle));
-    (none, together([(first, next([a, b, c])), (second, next([other_a, other_b, other_c]))]))
+    let (of_first, of_second) = (next([a, b, c]), next([other_a, other_b, other_c]));
+    // two alone are done sooner than a register of which six are idle, and have the same bits
+    let (first, second) = both(first.e.len() > LONG / 3, || first.at(of_first), || second.at(of_second));
+    (none, [first, second])
 }
 
 /// The likeliest noise of the rates of searches in one covariance, each with torque noise of a ratio to it.
