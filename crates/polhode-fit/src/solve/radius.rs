@@ -47,7 +47,7 @@ pub(crate) fn candidates(stretches: &[Stretch]) -> Vec<f64> {
     radii
 }
 
-/// Rounds at the middle radius, from the sphere: where radii are compared.
+/// Rounds at the middle radius, from the sphere: where radii are compared; and by how much the last of a descent has moved them.
 ///
 /// Torque noise that was fitted at one radius is that of all: its level is a property of the body.
 fn compared_at<'a>(
@@ -56,21 +56,22 @@ fn compared_at<'a>(
     columns: &'a [Column],
     variance: f64,
     noise: Option<Noise>,
-) -> Option<Rounds<'a>> {
+) -> Option<(Rounds<'a>, Option<f64>)> {
     let start = Unknowns::at(Coordinates::zeros(), columns);
     let mut rounds = Rounds::new(stretches, radii[radii.len() / 2], columns, start.clone())?;
     if let Some(noise) = noise {
-        if rounds.descend(variance, noise).is_none() {
+        let moved = rounds.descend(variance, noise);
+        if moved.is_none() {
             rounds.at = start;
         }
-    } else {
-        for _ in 0..COMPARED {
-            if rounds.round(variance, true).is_none() {
-                break;
-            }
+        return Some((rounds, moved));
+    }
+    for _ in 0..COMPARED {
+        if rounds.round(variance, true).is_none() {
+            break;
         }
     }
-    Some(rounds)
+    Some((rounds, None))
 }
 
 /// Equations of one radius, whose covariance is predicted.
@@ -143,18 +144,18 @@ fn least_covariance(
     alike.fold(best.1, |longest, (_, radius)| longest.max(*radius))
 }
 
-/// The radius of least predicted covariance, and the unknowns it was judged at.
-fn choose_radius(
-    stretches: &[Stretch],
-    columns: &[Column],
+/// The radius of least predicted covariance, and the rounds it was judged at with their last move.
+fn choose_radius<'a>(
+    stretches: &'a [Stretch],
+    columns: &'a [Column],
     variance: f64,
     noise: Option<Noise>,
     spared: f64,
-) -> Option<(f64, Unknowns)> {
+) -> Option<(f64, Rounds<'a>, Option<f64>)> {
     let radii = candidates(stretches);
-    let compared = compared_at(stretches, &radii, columns, variance, noise)?;
+    let (compared, moved) = compared_at(stretches, &radii, columns, variance, noise)?;
     let radius = least_covariance(stretches, &radii, columns, variance, &compared, spared);
-    Some((radius, compared.at))
+    Some((radius, compared, moved))
 }
 
 /// Refuses a radius whose equations are nearly as many as the samples.
@@ -192,8 +193,8 @@ pub(crate) fn estimate(
         None => {
             let pilot = pilot(stretches);
             let chosen = choose_radius(&pilot, columns, variance, None, spared(stretches));
-            let (radius, start) = chosen.ok_or(Failure::TooShort)?;
-            (radius, start, candidates(&pilot).into_iter().fold(radius, f64::max))
+            let (radius, compared, _) = chosen.ok_or(Failure::TooShort)?;
+            (radius, compared.at, candidates(&pilot).into_iter().fold(radius, f64::max))
         }
     };
     // torques that stand in a part of a long record stand in all of it
@@ -244,19 +245,26 @@ pub(crate) fn descended(
     noise: Noise,
     near: Option<Reached>,
 ) -> Result<WeakEstimate, Failure> {
-    let (radii, near) = match radius {
+    // of a short record the pilot is all of it
+    let is_whole = stretches.iter().map(|s| s.times.len()).sum::<usize>() <= PILOT_SAMPLES
+        && stretches.iter().all(|s| s.times.len() > 3);
+    let part = if is_whole || radius.is_some() { Vec::new() } else { pilot(stretches) };
+    let pilot: &[Stretch] = if is_whole { stretches } else { &part };
+    let (radii, is_done, compared) = match radius {
         Some(radius) => {
             check_radius(stretches, radius)?;
-            (vec![radius], near)
+            (vec![radius], false, None)
         }
         None => {
-            let pilot = pilot(stretches);
-            let chosen = choose_radius(&pilot, columns, variance, Some(noise), spared(stretches));
-            let (first, _) = chosen.ok_or(Failure::TooShort)?;
-            let all = candidates(&pilot);
+            let chosen = choose_radius(pilot, columns, variance, Some(noise), spared(stretches));
+            let (first, rounds, moved) = chosen.ok_or(Failure::TooShort)?;
+            let all = candidates(pilot);
+            // radii were compared after this very descent
+            let is_done = is_whole && first == all[all.len() / 2];
             let longer = all.iter().copied().filter(|r| *r > first * (1.0 + ROUNDED));
             let shorter = all.iter().rev().copied().filter(|r| *r < first * (1.0 - ROUNDED));
-            (core::iter::once(first).chain(longer).chain(shorter).collect(), near)
+            let radii: Vec<f64> = core::iter::once(first).chain(longer).chain(shorter).collect();
+            (radii, is_done, moved.filter(|_| is_done).map(|moved| (rounds, Some(moved))))
         }
     };
     let origin = Unknowns::at(Coordinates::zeros(), columns);
@@ -265,10 +273,12 @@ pub(crate) fn descended(
     let near = near.or_else(of_part);
     // from near by where that settles, and else as if nothing were known
     let resumed = || radii.first().copied().and_then(new)?.resumed(near?);
-    let each = core::iter::once_with(resumed).flatten().chain(radii.iter().filter_map(|radius| new(*radius)));
+    let others = radii.iter().skip(usize::from(is_done)).filter_map(|radius| new(*radius));
+    let to_do = core::iter::once_with(resumed).flatten().map(|rounds| (rounds, None));
+    let each = to_do.chain(compared).chain(others.map(|rounds| (rounds, None)));
     let mut best: Option<WeakEstimate> = None;
-    for mut rounds in each {
-        let moved = rounds.descend(variance, noise).filter(|&moved| moved <= RESTLESS);
+    for (mut rounds, moved) in each {
+        let moved = moved.or_else(|| rounds.descend(variance, noise)).filter(|&moved| moved <= RESTLESS);
         let weak = moved.and_then(|moved| rounds.finish(variance, moved));
         if let Some(weak) = weak.filter(|weak| weak.possible(variance)) {
             if weak.convergence() == Convergence::Still {
