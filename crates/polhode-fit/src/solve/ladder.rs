@@ -192,9 +192,11 @@ impl Ladder<'_> {
         // a long record goes on from where it stands
         let near = (is_long(stretches) && drag.weak.has_settled()).then(|| Reached::of(&drag.weak));
         let mut none = self.rung(TorqueModel::None, self.descent(TorqueModel::None, radius, near)?);
-        none.equations = self.equations(&none.weak);
+        // gains by torques: the errors of the sensor, many more columns, are asked for of the rung that is chosen
+        none.equations = Equations::new(stretches, &none.weak, &[], demand.columns, variance);
         let gain = gain_of(&none, &[TorqueModel::Constant], variance);
         let of_drag3 = gain_of(&none, &[TorqueModel::Drag3], variance);
+        none.equations = None;
         let floor = none.likelihood;
         // what is hopeless beside a drag is not tried in a long record
         let beside =
