@@ -73,7 +73,8 @@ thresholds! {
         SIGNIFICANT_GAIN: f64 = 50.0,
             "fall of chi squared that no wobble of noise brings: a chance of exp(-25) for each frequency", DERIVED;
         CLEAR: f64 = 10.0,
-            "times that gain in a part of a long record, beyond which the rest is not asked", "long_records_go_on_from_a_part_of_them";
+            "times that gain in a part of a record, beyond which the rest is not asked", "long_records_go_on_from_a_part_of_them";
+        FIRST: usize = 4, "parts of a stretch of which that is the first, unless it is shorter still", UNMEASURED;
         FALL: f64 = 0.03, "share of its torque noise that a round of a descent leaves at least", UNMEASURED;
         DESCENT: usize = 30, "rounds of a descent from boundless torque noise", UNMEASURED;
         SAME: f64 = 0.05, "relative change of a level of torque noise that no longer matters", UNMEASURED;

@@ -1,9 +1,9 @@
 //! Rounds of the weak equations at samples that each round moves further onto them.
 
-use crate::thresholds::radius::{LONG, PART};
+use crate::thresholds::radius::PART;
 use crate::thresholds::rounds::{
-    BOUNDLESS, CLEAR, DESCENT, FALL, FULL_ROUNDS, KEPT, NEGLIGIBLE, REACHED, RELAXED, ROUNDS, SAME, SHARES,
-    SIGNIFICANT_GAIN, STILL, TORQUES,
+    BOUNDLESS, CLEAR, DESCENT, FALL, FIRST, FULL_ROUNDS, KEPT, NEGLIGIBLE, REACHED, RELAXED, ROUNDS, SAME,
+    SHARES, SIGNIFICANT_GAIN, STILL, TORQUES,
 };
 use nalgebra::Vector3;
 
@@ -401,13 +401,12 @@ impl<'a> Rounds<'a> {
         })
     }
 
-    /// By how much the sphere leaves more of the first equations of a long stretch than the tensor does; zero of short ones.
+    /// By how much the sphere leaves more of the first equations of the longest stretch than the tensor does; zero where that has none so
+    /// short.
     fn gain_of_part(&self, whitened: &[Whitened], variance: f64) -> f64 {
         let longest = self.used.iter().zip(whitened).max_by_key(|((_, s, _), _)| s.times.len());
-        let Some(((k, stretch, tests), own)) = longest.filter(|((_, s, _), _)| s.times.len() > LONG) else {
-            return 0.0;
-        };
-        let head = stretch.head(PART);
+        let Some(((k, stretch, tests), own)) = longest else { return 0.0 };
+        let head = stretch.head(PART.min(stretch.times.len() / FIRST));
         let Some(tests) = TestFunctions::new(&head, tests.radius) else { return 0.0 };
         let part = 3 * tests.count;
         let of_sphere = self.squares_of_sphere(&[(*k, &head, tests)], variance);
