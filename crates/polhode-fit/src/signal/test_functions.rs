@@ -38,6 +38,14 @@ impl Corrections {
 impl TestFunctions {
     /// `None` where the stretch is shorter than one test function, or has too few samples for it.
     pub(crate) fn new(stretch: &Stretch, radius: f64) -> Option<TestFunctions> {
+        let mut tests = TestFunctions::places(stretch, radius)?;
+        tests.overlaps = overlaps(&tests);
+        tests.corrections = Arc::new(by_parts(&tests, stretch));
+        Some(tests)
+    }
+
+    /// The same without what asks for a pass over the samples: how many there are, and where.
+    pub(crate) fn places(stretch: &Stretch, radius: f64) -> Option<TestFunctions> {
         let duration = stretch.duration();
         let samples = stretch.times.len() as f64;
         // a radius that was cut from this very duration may exceed half of it by rounding
@@ -50,7 +58,7 @@ impl TestFunctions {
         let count = steps as usize + 1;
         let spacing = if count > 1 { room / steps } else { radius };
         let overlap = if count > 1 { (2.0 * radius / spacing - ROUNDED) as usize } else { 0 };
-        let mut tests = TestFunctions {
+        Some(TestFunctions {
             first: stretch.times[0] + radius,
             spacing,
             radius,
@@ -58,10 +66,7 @@ impl TestFunctions {
             reach: overlap.min(count - 1),
             corrections: Arc::new(Corrections::zeros(count)),
             overlaps: Arc::new([]),
-        };
-        tests.overlaps = overlaps(&tests);
-        tests.corrections = Arc::new(by_parts(&tests, stretch));
-        Some(tests)
+        })
     }
 
     /// u of test `m` at `t`.

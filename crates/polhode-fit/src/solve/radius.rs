@@ -161,7 +161,7 @@ fn choose_radius<'a>(
 /// Refuses a radius whose equations are nearly as many as the samples.
 fn check_radius(stretches: &[Stretch], radius: f64) -> Result<(), Failure> {
     let dense = |s: &Stretch| {
-        let tests = TestFunctions::new(s, radius);
+        let tests = TestFunctions::places(s, radius);
         tests.is_some_and(|tests| tests.count as f64 > DENSE * s.times.len() as f64)
     };
     if stretches.iter().any(dense) { Err(Failure::Dense) } else { Ok(()) }
