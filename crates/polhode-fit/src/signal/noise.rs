@@ -13,9 +13,9 @@ pub(crate) fn variance(stretches: &[Stretch]) -> f64 {
     let mut squares: Vec<f64> = Vec::new();
     for s in stretches {
         for (t, w) in s.times.windows(5).zip(s.rates.windows(5)) {
-            let h = t[4] - t[0];
+            let per = 1.0 / (t[4] - t[0]);
             let c: [f64; 5] = core::array::from_fn(|i| {
-                (0..5).filter(|&j| j != i).map(|j| (t[i] - t[j]) / h).fold(1.0, |p, d| p / d)
+                1.0 / (0..5).filter(|&j| j != i).map(|j| (t[i] - t[j]) * per).product::<f64>()
             });
             let norm: f64 = c.iter().map(|c| c * c).sum();
             let left = (0..5).map(|i| w[i] * c[i]).fold(nalgebra::Vector3::zeros(), |a, b| a + b);

@@ -44,8 +44,8 @@ pub(crate) fn weights(times: &[f64]) -> Vec<f64> {
 
 /// ∫ from a to b of Π (t − z)/(node − z) over at most three zeros z, by Simpson's rule, exact for cubics.
 fn lagrange_integral(node: f64, zeros: &[f64], a: f64, b: f64) -> f64 {
-    let value = |t: f64| zeros.iter().map(|z| (t - z) / (node - z)).product::<f64>();
-    (b - a) / 6.0 * (value(a) + 4.0 * value(0.5 * (a + b)) + value(b))
+    let value = |t: f64| zeros.iter().map(|z| t - z).product::<f64>();
+    (b - a) / 6.0 * (value(a) + 4.0 * value(0.5 * (a + b)) + value(b)) / value(node)
 }
 
 #[cfg(test)]
