@@ -57,7 +57,8 @@ struct Distance {
 
 impl Distance {
     fn new(euler: &Euler, means: &Means<'_>, range: Range<usize>, start: &Start) -> Distance {
-        if range.len() <= LONG {
+        // a step of the integrator takes as long as many other sums over a sample
+        if range.len() <= LONG / 10 {
             return Distance::one_by_one(euler, means, range, start);
         }
         // what comes before and after the start side by side, whatever the machine is
