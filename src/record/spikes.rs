@@ -97,6 +97,9 @@ pub(super) fn spikes(places: &[f64], rates: &[Vector3<f64>]) -> Vec<usize> {
     let mut scores = Scores::new(samples);
     // where the motion is too fast for the sampling, all samples deviate
     let stands_out = |scores: &Scores, i: usize| {
+        if !scores.may_be_far(i) {
+            return false;
+        }
         let own = scores.at(i);
         if !own.is_far() {
             return false;
@@ -168,6 +171,12 @@ impl<'a> Scores<'a> {
             median(&mut of_set).unwrap_or(0.0)
         });
         Scores { samples, all, usual, changed: BTreeMap::new() }
+    }
+
+    /// Whether that of a sample can be far: where three predictions are near, the middle one of at most five is.
+    fn may_be_far(&self, i: usize) -> bool {
+        let first = self.samples.deviations(&self.all, i, [0, 1, 2]);
+        self.changed.contains_key(&i) || !(0..3).all(|k| first[k] / self.usual[k] <= FAR)
     }
 
     /// The score of a sample so far.
