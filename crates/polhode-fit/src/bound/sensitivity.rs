@@ -1,9 +1,12 @@
 //! How a free motion depends on its tensor and its start, by the variational equations.
 
 use crate::thresholds::bound::{PARTS, STEP};
+use crate::thresholds::radius::LONG;
+use core::ops::Range;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 use crate::physical::coordinates::{Form, basis};
+use crate::signal::both::both;
 use crate::signal::terms::cross_derivative;
 
 /// ∂ω/∂(x, ω₀), or ∂ω/∂ω₀ alone where N is 3.
@@ -75,31 +78,41 @@ impl Euler {
     /// Among samples within a step of the integrator, S is the cubic through the first and the last of them with their
     /// slopes, which is as near to it as the integrator is.
     pub(super) fn information(&self, times: &[f64], start: &Start) -> SMatrix<f64, 8, 8> {
-        let mut sum = SMatrix::zeros();
         let speed = (self.inverse * cross_derivative(&self.j, &start.rate)).norm();
         let nodes = nodes(times, STEP / speed);
         let at: Vec<f64> = nodes.iter().map(|&node| times[node]).collect();
-        let (mut first, mut last): (Option<Node>, Option<Node>) = (None, None);
-        self.sweep(&at, start, |i, w, s: &Sensitivity<8>| {
-            sum += s.transpose() * s;
-            let slope = self.derivative(w, s).1;
-            // the sweep goes forth from the start, and then back from it
-            let before = last.replace((i, *s, slope)).filter(|(k, ..)| k.abs_diff(i) == 1);
-            let origin = first.get_or_insert((i, *s, slope));
-            if let Some((k, from, from_slope)) = before.or((origin.0 == i + 1).then_some(*origin)) {
-                let (low, high) = (nodes[i.min(k)], nodes[i.max(k)]);
-                let length = at[i] - at[k];
-                let parts = [from, from_slope * length, *s, slope * length];
-                let weights = times[low + 1..high].iter().map(|t| hermite((t - at[k]) / length));
-                let mut squares = SMatrix::<f64, 4, 4>::zeros();
-                weights.for_each(|h| squares += h * h.transpose());
-                for (a, first) in parts.iter().enumerate() {
-                    let own = (0..4).map(|b| parts[b] * squares[(a, b)]).sum::<Sensitivity<8>>();
-                    sum += first.transpose() * own;
+        let of = |own: Range<usize>, counted: Range<usize>| {
+            let (mut sum, mut last): (SMatrix<f64, 8, 8>, Option<Node>) = (SMatrix::zeros(), None);
+            let first = own.start;
+            self.sweep(&at[own], start, |place, w, s: &Sensitivity<8>| {
+                let i = first + place;
+                if counted.contains(&i) {
+                    sum += s.transpose() * s;
                 }
-            }
-        });
-        sum
+                let slope = self.derivative(w, s).1;
+                if let Some((k, from, from_slope)) = last.replace((i, *s, slope)) {
+                    let (low, high) = (nodes[i.min(k)], nodes[i.max(k)]);
+                    let length = at[i] - at[k];
+                    let parts = [from, from_slope * length, *s, slope * length];
+                    let weights = times[low + 1..high].iter().map(|t| hermite((t - at[k]) / length));
+                    let mut squares = SMatrix::<f64, 4, 4>::zeros();
+                    weights.for_each(|h| squares += h * h.transpose());
+                    for (a, first) in parts.iter().enumerate() {
+                        let own = (0..4).map(|b| parts[b] * squares[(a, b)]).sum::<Sensitivity<8>>();
+                        sum += first.transpose() * own;
+                    }
+                }
+            });
+            sum
+        };
+        // what comes before and after the start side by side, whatever the machine is; both ways begin at the first node after it
+        let (split, end) = (at.partition_point(|&t| t < start.time), at.len());
+        let (after, before) = both(
+            end > LONG / 10,
+            || of(split..end, split..end),
+            || of(0..end.min(split + 1), 0..split),
+        );
+        after + before
     }
 }
 
