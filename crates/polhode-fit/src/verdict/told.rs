@@ -25,14 +25,15 @@ pub(crate) fn check_told(
     variance: f64,
     rms: f64,
 ) -> Result<(), FitError> {
-    if is_explained(chosen, variance) {
+    let components = told_components(stretches);
+    if components.is_empty() || is_explained(chosen, variance) {
         return Ok(());
     }
     let part = pilot(stretches);
     let torques = [TorqueModel::Drag, TorqueModel::Constant].into_iter().flat_map(torque_columns);
     let torques: Vec<Column> = torques.collect();
     let as_told = likelihood(stretches, &chosen.weak, variance);
-    let explaining = told_components(stretches).into_iter().filter_map(|axis| {
+    let explaining = components.into_iter().filter_map(|axis| {
         let own = Column::new(WheelAxis(axis), None);
         let columns: Vec<Column> = demand.columns.iter().copied().chain([own]).collect();
         let free = Demand { torque: TorqueModel::Auto, noise: Noise::Fitted, columns: &columns, ..demand };
