@@ -40,7 +40,7 @@ impl Own {
                 (0..6).for_each(|p| row[3 + p] += value * products[p]);
                 (0..3).for_each(|p| row[9 + p] += value * w[p]);
                 row[12] += value;
-                for (n, other, _) in seen.each().filter(|(n, ..)| (m..=m + tests.reach).contains(n)) {
+                for (n, other, _) in seen.each().skip(m - seen.first).take(tests.reach + 1) {
                     noise.add(n, m, slope * weight * other);
                 }
             }
