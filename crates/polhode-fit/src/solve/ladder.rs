@@ -8,7 +8,6 @@ use crate::models::reading_error::{ReadingError, Units};
 use crate::models::weighed::{Weighed, asked};
 use crate::physical::coordinates::Coordinates;
 use crate::settings::torque::TorqueModel;
-use crate::signal::covariance::Levels;
 use crate::signal::stretch::Stretch;
 use crate::solve::levels::{Choice, likeliest};
 use crate::solve::radius::{Ends, Failure, descended, estimate, is_long};
@@ -253,7 +252,7 @@ impl Ladder<'_> {
     }
 
     fn rung(&self, model: TorqueModel, weak: WeakEstimate) -> Rung {
-        let likelihood = likelihood(self.stretches, &weak, self.variance);
+        let likelihood = likelihood(&weak, self.variance);
         Rung { model, weak, likelihood, equations: None }
     }
 
@@ -308,13 +307,8 @@ pub(crate) fn threshold(coefficients: usize) -> f64 {
 ///
 /// It is that of the samples: the determinants are over those without torque noise, since residuals and covariance
 /// that both shrink with the tensor tell nothing.
-pub(crate) fn likelihood(stretches: &[Stretch], weak: &WeakEstimate, variance: f64) -> f64 {
-    let mut sum = weak.squares / variance;
-    for part in weak.parts.iter().filter(|part| part.levels != Levels::WHITE) {
-        let white = part.covariance(&stretches[part.stretch]).into_factor(Levels::WHITE);
-        let Some(white) = white else { return f64::NEG_INFINITY };
-        sum += part.log_determinant - white.log_determinant();
-    }
+pub(crate) fn likelihood(weak: &WeakEstimate, variance: f64) -> f64 {
+    let sum = weak.parts.iter().fold(weak.squares / variance, |sum, part| sum + part.log_determinant);
     if weak.parts.is_empty() { f64::NEG_INFINITY } else { -0.5 * sum }
 }
 

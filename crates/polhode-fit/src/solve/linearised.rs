@@ -102,9 +102,9 @@ impl Linearised {
 }
 
 impl Whitened {
-    /// log |C|.
-    pub(crate) fn log_determinant(&self) -> f64 {
-        self.factor.log_determinant()
+    /// log |C| less that of another factor; infinite where there is none.
+    pub(crate) fn log_determinant_over(&self, other: Option<&Banded>) -> f64 {
+        other.map_or(f64::INFINITY, |other| self.factor.log_determinant() - other.log_determinant())
     }
 
     /// Whitened residuals at `at`.

@@ -344,7 +344,14 @@ impl<'a> Rounds<'a> {
 
     pub(crate) fn finish(self, variance: f64, moved: f64) -> Option<WeakEstimate> {
         let parts = self.linearise();
-        let whitened = self.whiten(&parts)?;
+        let (mut whitened, mut determinants) = (Vec::new(), Vec::new());
+        for ((part, covariance), levels) in parts.iter().zip(self.covariances(&parts)).zip(&self.levels) {
+            let white = (*levels != Levels::WHITE).then(|| covariance.factor(Levels::WHITE));
+            let driven = self.driven.then_some(self.columns);
+            let own = part.whitened(covariance.into_factor(*levels)?, *levels, driven);
+            determinants.push(white.map_or(0.0, |white| own.log_determinant_over(white.as_ref())));
+            whitened.push(own);
+        }
         let stacked = self.stack(&whitened, variance);
         let best = self.pull.as_ref().map_or_else(|| stacked.minimiser(), |pull| stacked.pulled(pull));
         let at = best.unwrap_or_else(|| self.at.clone());
@@ -357,7 +364,7 @@ impl<'a> Rounds<'a> {
         let (root, doubt) =
             if stands_out { (stacked.root, Form::zeros()) } else { self.constant_rates(variance)? };
         let radius = self.used.first()?.2.radius;
-        let each = self.used.into_iter().zip(parts).zip(whitened).zip(self.noise);
+        let each = self.used.into_iter().zip(parts).zip(whitened).zip(determinants).zip(self.noise);
         Some(WeakEstimate {
             radius,
             columns: self.columns.to_vec(),
@@ -369,11 +376,11 @@ impl<'a> Rounds<'a> {
             rows: stacked.rows,
             stacked: Some(stacked),
             parts: each
-                .map(|((((k, _, _), linearised), whitened), noise)| Part {
+                .map(|(((((k, _, _), linearised), whitened), log_determinant), noise)| Part {
                     stretch: k,
                     linearised,
                     levels: whitened.levels,
-                    log_determinant: whitened.log_determinant(),
+                    log_determinant,
                     rows: whitened.rows,
                     noise,
                 })

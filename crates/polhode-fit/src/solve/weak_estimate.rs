@@ -56,7 +56,7 @@ pub(crate) struct Part {
     /// Its rows whitened.
     pub(crate) rows: Vec<f64>,
     pub(crate) levels: Levels,
-    /// log |C|.
+    /// log |C| less that of the noise of the rates alone; infinite where that is not positive.
     pub(crate) log_determinant: f64,
     /// The noise of the samples so far.
     pub(crate) noise: Vec<Vector3<f64>>,

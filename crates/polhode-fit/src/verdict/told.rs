@@ -32,7 +32,7 @@ pub(crate) fn check_told(
     let part = pilot(stretches);
     let torques = [TorqueModel::Drag, TorqueModel::Constant].into_iter().flat_map(torque_columns);
     let torques: Vec<Column> = torques.collect();
-    let as_told = likelihood(stretches, &chosen.weak, variance);
+    let as_told = likelihood(&chosen.weak, variance);
     let explaining = components.into_iter().filter_map(|axis| {
         let own = Column::new(WheelAxis(axis), None);
         let columns: Vec<Column> = demand.columns.iter().copied().chain([own]).collect();
@@ -52,7 +52,7 @@ pub(crate) fn check_told(
         }
         // one radius for both, so that their likelihoods are those of the same equations
         let found = climb(stretches, Demand { radius: Some(chosen.weak.radius), ..free }, variance).ok()?;
-        let gain = likelihood(stretches, &found.weak, variance) - as_told;
+        let gain = likelihood(&found.weak, variance) - as_told;
         let is_calmer = torque_noise(&found.weak) < CALMER * torque_noise(&chosen.weak);
         let told = factor(&found.weak, axis, variance)?;
         let is_plausible = (1.0 / PLAUSIBLE..=PLAUSIBLE).contains(&told.factor);
