@@ -298,9 +298,8 @@ fn beside(
 ) -> DMatrix<f64> {
     let count = weak.columns.len();
     let of_choice = factor(spread);
-    let choice = (0..5).map(|e| {
-        DVector::from_fn(count + 5, |k, _| if k < count { 0.0 } else { of_choice[(k - count, e)] })
-    });
+    let choice = (0..5)
+        .map(|e| DVector::from_fn(count + 5, |k, _| if k < count { 0.0 } else { of_choice[(k - count, e)] }));
     let reached = suspected.and_then(|found| found.reached.as_ref()).map(|to| {
         let steps = DVector::from_column_slice((to.x - weak.at.x).as_slice());
         DVector::from_fn(count + 5, |k, _| match k.checked_sub(count) {

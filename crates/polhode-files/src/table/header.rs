@@ -5,7 +5,9 @@ use polhode::units::{RateUnit, TimeUnit};
 
 use super::flags::ColumnNames;
 use super::name::Name;
-use super::spellings::{ANGLE_ENDINGS, NO_ENDINGS, Quantity, RATE_ENDINGS, SPELLINGS, direction, frame, is_id};
+use super::spellings::{
+    ANGLE_ENDINGS, NO_ENDINGS, Quantity, RATE_ENDINGS, SPELLINGS, direction, frame, is_id,
+};
 use crate::error::Rule;
 
 /// Columns of one quantity.

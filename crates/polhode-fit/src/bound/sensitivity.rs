@@ -107,11 +107,8 @@ impl Euler {
         };
         // what comes before and after the start side by side, whatever the machine is; both ways begin at the first node after it
         let (split, end) = (at.partition_point(|&t| t < start.time), at.len());
-        let (after, before) = both(
-            end > LONG / 10,
-            || of(split..end, split..end),
-            || of(0..end.min(split + 1), 0..split),
-        );
+        let (after, before) =
+            both(end > LONG / 10, || of(split..end, split..end), || of(0..end.min(split + 1), 0..split));
         after + before
     }
 }

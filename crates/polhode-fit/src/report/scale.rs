@@ -256,10 +256,7 @@ mod tests {
             Stretch { start: times[range.start] / rms, ..Stretch::new(own, rates[range].to_vec()) }
         };
         let stretches = [part(0..12), part(12..30)];
-        for (known, g) in [
-            (Known::TwiceEnergy(3.0), rates[0]),
-            (Known::Momentum(3.0), j * rates[0]),
-        ] {
+        for (known, g) in [(Known::TwiceEnergy(3.0), rates[0]), (Known::Momentum(3.0), j * rates[0])] {
             let scale = scale_of(known, &stretches, rms, &j, noise).walking(&stretches, rms, |_| density);
             let growth = 4.0 * g.dot(&(density * g));
             let both = times.iter().flat_map(|a| times.iter().map(move |b| a.min(*b)));

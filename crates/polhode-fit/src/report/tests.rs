@@ -58,7 +58,8 @@ fn trends_of_momentum_and_energy_are_those_of_the_drag() {
         assert!(squares.iter().all(|square| (0.6..1.5).contains(square)), "{is_noisy}: {squares:?}");
     }
     let (times, rates) = rates(&Disturbances::default(), 0.0, 2, &mut random);
-    let (momentum, _) = trends(&[Stretch::new(times, rates)], Clone::clone, &body(), 1e-6, |_| Matrix3::zeros());
+    let (momentum, _) =
+        trends(&[Stretch::new(times, rates)], Clone::clone, &body(), 1e-6, |_| Matrix3::zeros());
     assert!(!momentum.significant() && momentum.rate == 0.0, "two samples have no trend");
 }
 
