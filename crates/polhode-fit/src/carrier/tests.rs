@@ -69,7 +69,7 @@ fn what_widens_an_estimate_widens_what_its_record_tells() {
     drawn.beside = off.clone();
     let of_input = drawn.weak.columns.iter().position(|column| column.class() == Class::Input).unwrap();
     let input = off[(of_input, 0)] / drawn.input.unwrap();
-    let readings = std::iter::once(input).chain(off.column(0).iter().skip(size - 5).copied());
+    let readings = std::iter::once(input).chain(off.iter().skip(size - 5).copied());
     let expected = DVector::from_iterator(6, readings);
     let more = covariance(&drawn) - before;
     let expected = &expected * expected.transpose();
