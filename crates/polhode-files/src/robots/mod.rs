@@ -113,3 +113,46 @@ fn positive(mass: f64) -> Result<f64, String> {
         ))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const INERTIAL: &str =
+        "<inertial><mass>2</mass><inertia><ixx>1</ixx><iyy>2</iyy><izz>2.5</izz></inertia></inertial>";
+    const TENSOR: &str = "<mass value='2'/><inertia ixx='1' iyy='2' izz='2.5' ixy='0' ixz='0' iyz='0'/>";
+
+    /// The name and the defect of every link of a model.
+    fn defects(language: Language, text: &str) -> Vec<(String, String)> {
+        let links = read(language, Path::new("model"), text, None).unwrap();
+        links.into_iter().map(|link| (link.name, link.defect.unwrap_or_default())).collect()
+    }
+
+    #[test]
+    fn what_another_file_or_macro_would_add_is_a_defect() {
+        let text = format!(
+            "<sdf version='1.9'><model name='m'><include><uri> model://arm </uri></include>\n\
+             <link name='base'>{INERTIAL}</link><plugin name='p'><include/></plugin></model></sdf>"
+        );
+        let found = defects(Language::Sdf, &text);
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert_eq!(found[0].0, "include model://arm");
+        assert!(found[0].1.starts_with("model:1: <include>: the included model is not read"), "{found:?}");
+        assert_eq!(found[1], ("base".into(), String::new()));
+
+        let text = format!(
+            "<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'>\
+             <xacro:property name='a' value='1'/><xacro:arg name='b' default='1'/><xacro:macro name='arm'/>\n\
+             <xacro:include filename='arm.xacro'/>\n<xacro:arm prefix='left'/>\n\
+             <link name='base'><inertial>{TENSOR}</inertial></link></robot>"
+        );
+        let found = defects(Language::Urdf, &text);
+        let names: Vec<&str> = found.iter().map(|(name, _)| name.as_str()).collect();
+        assert_eq!(names, ["base", "xacro:include arm.xacro", "xacro:arm"]);
+        assert_eq!(found[0].1, "");
+        assert!(found[1].1.starts_with("model:2: <xacro:include>: xacro is not expanded"), "{found:?}");
+        assert!(found[2].1.starts_with("model:3: <xacro:arm>: xacro is not expanded"), "{found:?}");
+        // a file of nothing else is not empty
+        assert_eq!(defects(Language::Urdf, "<robot><xacro:include filename='a'/></robot>").len(), 1);
+    }
+}

@@ -28,6 +28,12 @@ fn collect(element: &Element, scope: &str, scoped: bool, found: &mut Vec<Given>)
                 found.push(link(&format!("{scope}{name}"), child, given));
             }
             "inertial" => found.push(link(scope, child, stated(child))),
+            "include" if matches!(element.tag.as_str(), "sdf" | "world" | "model") => {
+                let uri = child.child("uri").and_then(|uri| uri.text.as_ref());
+                let uri = uri.map_or("", |uri| uri.text.trim());
+                let defect = child.error("the included model is not read; put its links into this file");
+                found.push(link(&format!("{scope}include {uri}"), child, Err(defect)));
+            }
             _ => collect(child, scope, scoped, found),
         }
     }

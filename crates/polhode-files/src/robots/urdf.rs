@@ -6,21 +6,32 @@ use super::element::Element;
 use super::pose::{quarter_turns_exact, roll_pitch_yaw};
 use super::{Given, is_massless, link, positive, writing};
 
-/// Every link, or every `<inertial>` of a fragment.
+/// Elements of xacro that make nothing by themselves.
+const DEFINITIONS: [&str; 3] = ["property", "arg", "macro"];
+
+/// Every link, or every `<inertial>` of a fragment; then a row for each element that xacro would replace.
 pub(super) fn links(document: &Element) -> Vec<Given> {
     let all = document.all();
     let links: Vec<&&Element> =
         all.iter().filter(|element| element.tag == "link" && is_link(element)).collect();
+    let unread = all.iter().filter(|element| {
+        element.tag.strip_prefix("xacro:").is_some_and(|kind| !DEFINITIONS.contains(&kind))
+    });
+    let unread = unread.map(|element| {
+        let file = element.attribute("filename").map_or(String::new(), |file| format!(" {file}"));
+        let defect = element.error("xacro is not expanded; name the URDF file that xacro writes");
+        link(&format!("{}{file}", element.tag), element, Err(defect))
+    });
     if links.is_empty() {
         let fragments = all.iter().filter(|element| element.tag == "inertial");
-        return fragments.map(|inertial| link("", inertial, stated(inertial))).collect();
+        return fragments.map(|inertial| link("", inertial, stated(inertial))).chain(unread).collect();
     }
     let each = |element: &&&Element| {
         let name = element.attribute("name").unwrap_or_default();
         let stated = element.single("inertial").and_then(|inertial| inertial.map_or(Ok(None), stated));
         link(name, element, stated)
     };
-    links.iter().map(each).collect()
+    links.iter().map(each).chain(unread).collect()
 }
 
 /// Transmissions and plugins name links by elements of the same name, which hold text or an attribute alone.
