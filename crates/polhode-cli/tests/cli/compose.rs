@@ -64,6 +64,16 @@ fn a_link_of_a_model_is_named_behind_a_colon() {
     assert!((energy - 0.5 * (2.0 * 0.09 + 1.0 + 2.5 * 0.16)).abs() < 1e-12, "{text}");
     refused(&format!("propagate --body {robot} {start}"), &["has 2 bodies: upper, lower", "FILE:NAME"]);
     refused(&format!("propagate --body {robot}:uper {start}"), &["'uper': no such link", "'upper'"]);
+    // a name that several have names none of them
+    let twice = scratch
+        .file("twice.urdf", format!("<robot name='r'>{}{}</robot>", link("upper", 1.0), link("upper", 1.5)));
+    let of_json = |xx: u8| format!("{{\"name\":\"upper\",\"inertia\":[[{xx},0,0],[0,6,0],[0,0,7]]}}");
+    let array = scratch.file("twice.json", format!("[{},{}]", of_json(5), of_json(6)));
+    for file in [&twice, &array] {
+        refused(&format!("propagate --body {file}:upper {start}"), &["2 bodies of the file have this name"]);
+    }
+    let answer = run(&format!("inertia urdf {twice}"));
+    assert!(answer.code == 1 && answer.err.contains("the name stands at"), "{answer:?}");
     let nameless = scratch.file("box.json", output("inertia box 3,2,1 --mass 1 --format json"));
     refused(&format!("propagate --body {nameless}:lid {start}"), &["have no names", "leave out the colon"]);
     let empty = scratch.file("frames.urdf", "<robot name='r'><link name='base'/></robot>");

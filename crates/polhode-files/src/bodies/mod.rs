@@ -58,6 +58,13 @@ fn chosen<'t>(flag: &str, text: &'t str) -> Result<Option<Chosen<'t>>, Error> {
         _ => return Ok(None),
     };
     let mut bodies = tensors(flag, path)?;
+    if let Some(link) = link {
+        let namesakes = bodies.iter().filter(|(name, ..)| name == link).count();
+        if namesakes > 1 {
+            let rule = format!("{namesakes} bodies of the file have this name");
+            return Err(Error::input(flag, text, &rule, "give each body a name of its own"));
+        }
+    }
     let chosen = match link {
         Some(link) => bodies.iter().position(|(name, ..)| name == link),
         None if bodies.len() == 1 => Some(0),
@@ -121,7 +128,7 @@ fn links(path: &Path, kind: &str) -> Result<Vec<Named>, Error> {
         let turn = body.turn.to_rotation_matrix();
         turn * body.tensor * turn.transpose()
     };
-    let links = robots::read(language, path, &text, None)?;
+    let links = robots::with_namesakes(language, path, &text, None)?;
     // a frame without a body, and a link that states no tensor, have none to give
     let bodies = links.iter().filter(|link| !link.massless && link.defect.is_none());
     Ok(bodies.map(|body| (body.name.clone(), tensor(body), Vec::new())).collect())

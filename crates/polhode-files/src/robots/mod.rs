@@ -8,11 +8,13 @@ mod sdf;
 mod urdf;
 mod visuals;
 
+use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
 
 use crate::error::Error;
 use crate::given::{Given, Writing};
+use crate::text::visible;
 use element::Element;
 pub use element::Value;
 pub(crate) use visuals::visuals;
@@ -66,6 +68,31 @@ impl Language {
 /// # Errors
 /// Text that is no XML, and XML of another kind. A defect of one link is a defect of that link alone.
 pub fn read(language: Language, path: &Path, text: &str, root: Option<&Path>) -> Result<Vec<Given>, Error> {
+    let mut links = with_namesakes(language, path, text, root)?;
+    let mut places: HashMap<String, String> = HashMap::new();
+    let has_tensor = |link: &&mut Given| !link.name.is_empty() && !link.massless && link.defect.is_none();
+    for link in links.iter_mut().filter(has_tensor) {
+        let place = link.place.clone().unwrap_or_default();
+        match places.get(&link.name) {
+            Some(first) => {
+                let defect = format!("{place}: the name stands at {first} already; give each link its own");
+                link.defect = Some(visible(&defect).into());
+            }
+            None => {
+                places.insert(link.name.clone(), place);
+            }
+        }
+    }
+    Ok(links)
+}
+
+/// The same, where several links may have one name.
+pub(crate) fn with_namesakes(
+    language: Language,
+    path: &Path,
+    text: &str,
+    root: Option<&Path>,
+) -> Result<Vec<Given>, Error> {
     let document = Element::parse(path, text)?;
     let roots = language.roots();
     if !document.children.iter().any(|root| roots.contains(&root.tag.as_str())) {
@@ -154,5 +181,18 @@ mod tests {
         assert!(found[2].1.starts_with("model:3: <xacro:arm>: xacro is not expanded"), "{found:?}");
         // a file of nothing else is not empty
         assert_eq!(defects(Language::Urdf, "<robot><xacro:include filename='a'/></robot>").len(), 1);
+    }
+
+    #[test]
+    fn a_name_that_stands_twice_is_a_defect() {
+        let link = |name: &str| format!("<link name='{name}'><inertial>{TENSOR}</inertial></link>\n");
+        // where a link is only named, it has no tensor
+        let text = format!("<robot>\n{}{}<link name='leg'/>{}</robot>", link("arm"), link("leg"), link("arm"));
+        let found = defects(Language::Urdf, &text);
+        assert_eq!(found.iter().filter(|(_, defect)| !defect.is_empty()).count(), 1, "{found:?}");
+        assert_eq!(
+            found[3],
+            ("arm".into(), "model:4: the name stands at model:2 already; give each link its own".into())
+        );
     }
 }
