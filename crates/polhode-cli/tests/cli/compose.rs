@@ -74,6 +74,11 @@ fn a_link_of_a_model_is_named_behind_a_colon() {
     }
     let answer = run(&format!("inertia urdf {twice}"));
     assert!(answer.code == 1 && answer.err.contains("the name stands at"), "{answer:?}");
+    let model = scratch.file(
+        "model.xml",
+        "<mujoco><compiler angle='Radian'/><body name='a'><geom size='1' mass='1'/></body></mujoco>",
+    );
+    refused(&format!("propagate --body {model}:a {start}"), &["model.xml:1: <compiler>: angle: 'Radian'"]);
     let nameless = scratch.file("box.json", output("inertia box 3,2,1 --mass 1 --format json"));
     refused(&format!("propagate --body {nameless}:lid {start}"), &["have no names", "leave out the colon"]);
     let empty = scratch.file("frames.urdf", "<robot name='r'><link name='base'/></robot>");

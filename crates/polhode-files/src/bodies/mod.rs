@@ -129,6 +129,11 @@ fn links(path: &Path, kind: &str) -> Result<Vec<Named>, Error> {
         turn * body.tensor * turn.transpose()
     };
     let links = robots::with_namesakes(language, path, &text, None)?;
+    // which could change every tensor
+    let unread = links.iter().find(|link| link.name == robots::SETTINGS);
+    if let Some(defect) = unread.and_then(|link| link.defect.clone()) {
+        return Err(Error::Input(defect));
+    }
     // a frame without a body, and a link that states no tensor, have none to give
     let bodies = links.iter().filter(|link| !link.massless && link.defect.is_none());
     Ok(bodies.map(|body| (body.name.clone(), tensor(body), Vec::new())).collect())

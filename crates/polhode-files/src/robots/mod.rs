@@ -19,6 +19,9 @@ use element::Element;
 pub use element::Value;
 pub(crate) use visuals::visuals;
 
+/// The name of a row for a setting of a whole model that cannot be read; no body has it.
+pub(crate) const SETTINGS: &str = "<compiler>";
+
 /// A language of models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Language {
@@ -165,7 +168,7 @@ mod tests {
         assert_eq!(found.len(), 2, "{found:?}");
         assert_eq!(found[0].0, "include model://arm");
         assert!(found[0].1.starts_with("model:1: <include>: the included model is not read"), "{found:?}");
-        assert_eq!(found[1], ("base".into(), String::new()));
+        assert_eq!(found[1], ("base".to_string(), String::new()));
 
         let text = format!(
             "<robot name='r' xmlns:xacro='http://www.ros.org/wiki/xacro'>\
@@ -184,15 +187,45 @@ mod tests {
     }
 
     #[test]
+    fn settings_that_cannot_be_read_are_defects() {
+        let model = |settings: &str| {
+            let body = "<body name='b'><geom type='box' size='1 2 3' mass='1'/></body>";
+            let text = format!("<mujoco><compiler {settings}/><worldbody>{body}</worldbody></mujoco>");
+            defects(Language::Mjcf, &text)
+        };
+        for (settings, says) in [
+            ("boundmass='0,5'", "boundmass: '0,5' is not a number"),
+            ("boundinertia='tiny'", "boundinertia: 'tiny' is not a number"),
+            ("settotalmass='10kg'", "settotalmass: '10kg' is not a number"),
+            ("inertiagrouprange='0-1'", "inertiagrouprange: '0-1' is not a number"),
+            ("inertiagrouprange='0'", "inertiagrouprange: 1 given, 2 needed"),
+            ("angle='Radian'", "angle: 'Radian' is unknown; known: degree, radian"),
+            ("inertiafromgeom='yes'", "inertiafromgeom: 'yes' is unknown; known: auto, false, true"),
+            ("coordinate='global'", "coordinate: 'global' is not read"),
+        ] {
+            let found = model(settings);
+            assert_eq!(found.len(), 2, "{settings}: {found:?}");
+            assert_eq!(found[0], ("b".to_string(), String::new()), "{settings}");
+            assert_eq!(found[1].0, SETTINGS);
+            assert!(found[1].1.starts_with(&format!("model:1: <compiler>: {says}")), "{settings}: {found:?}");
+        }
+        assert_eq!(model("boundmass='0,5' angle='Radian' settotalmass='10kg'").len(), 4);
+        for known in ["boundmass='0.5' inertiagrouprange='0 1'", "angle='degree'", "coordinate='local'"] {
+            let found = model(&format!("{known} inertiafromgeom='auto'"));
+            assert_eq!(found, [("b".to_string(), String::new())], "{known}");
+        }
+    }
+
+    #[test]
     fn a_name_that_stands_twice_is_a_defect() {
         let link = |name: &str| format!("<link name='{name}'><inertial>{TENSOR}</inertial></link>\n");
         // where a link is only named, it has no tensor
-        let text = format!("<robot>\n{}{}<link name='leg'/>{}</robot>", link("arm"), link("leg"), link("arm"));
+        let [arm, leg] = ["arm", "leg"].map(link);
+        let text = format!("<robot>\n{arm}{leg}<link name='leg'/>{arm}</robot>");
         let found = defects(Language::Urdf, &text);
         assert_eq!(found.iter().filter(|(_, defect)| !defect.is_empty()).count(), 1, "{found:?}");
-        assert_eq!(
-            found[3],
-            ("arm".into(), "model:4: the name stands at model:2 already; give each link its own".into())
-        );
+        let (name, defect) = &found[3];
+        assert_eq!(name, "arm");
+        assert_eq!(defect, "model:4: the name stands at model:2 already; give each link its own");
     }
 }

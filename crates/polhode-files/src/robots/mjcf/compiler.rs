@@ -5,6 +5,7 @@ use polhode::inertia::MassProperties;
 
 use super::super::element::Element;
 use super::super::pose::Pose;
+use super::super::{SETTINGS, link};
 use super::Given;
 use super::orientation::orientation;
 
@@ -33,8 +34,8 @@ pub(super) struct Compiler {
 }
 
 impl Compiler {
-    /// Of all elements of a model; of an attribute that is given twice the last counts.
-    pub(super) fn of(all: &[&Element]) -> Self {
+    /// Of all elements of a model; of an attribute that is given twice the last counts. A row for each that cannot be read.
+    pub(super) fn of(all: &[&Element]) -> (Self, Vec<Given>) {
         let mut settings = Compiler {
             source: Source::Either,
             angle: core::f64::consts::PI / 180.0,
@@ -44,29 +45,48 @@ impl Compiler {
             least_moment: 0.0,
             total_mass: None,
         };
+        let mut unread = Vec::new();
         for element in all.iter().filter(|element| element.tag == "compiler") {
+            let mut defect = |defect: String| unread.push(link(SETTINGS, element, Err(defect)));
+            let unknown = |attribute: &str, value: &str, known: &str| {
+                element.error(&format!("{attribute}: '{value}' is unknown; known: {known}"))
+            };
             match element.attribute("inertiafromgeom") {
                 Some("true") => settings.source = Source::Geoms,
                 Some("false") => settings.source = Source::Inertial,
-                Some(_) => settings.source = Source::Either,
+                Some("auto") => settings.source = Source::Either,
+                Some(other) => defect(unknown("inertiafromgeom", other, "auto, false, true")),
                 None => {}
             }
             match element.attribute("angle") {
                 Some("radian") => settings.angle = 1.0,
-                Some(_) => settings.angle = core::f64::consts::PI / 180.0,
+                Some("degree") => settings.angle = core::f64::consts::PI / 180.0,
+                Some(other) => defect(unknown("angle", other, "degree, radian")),
                 None => {}
+            }
+            if let Some(other) = element.attribute("coordinate").filter(|frame| *frame != "local") {
+                let rule = format!("coordinate: '{other}' is not read; write the model in local coordinates");
+                defect(element.error(&rule));
             }
             if let Some(sequence) = element.attribute("eulerseq") {
                 settings.sequence = sequence.into();
             }
-            let number = |attribute| element.optional::<1>(attribute).ok().flatten().map(|[value]| value);
-            settings.groups =
-                element.optional::<2>("inertiagrouprange").ok().flatten().unwrap_or(settings.groups);
+            match element.optional::<2>("inertiagrouprange") {
+                Ok(groups) => settings.groups = groups.unwrap_or(settings.groups),
+                Err(error) => defect(error),
+            }
+            let mut number = |attribute| match element.optional::<1>(attribute) {
+                Ok(found) => found.map(|[value]| value),
+                Err(error) => {
+                    defect(error);
+                    None
+                }
+            };
             settings.least_mass = number("boundmass").unwrap_or(settings.least_mass);
             settings.least_moment = number("boundinertia").unwrap_or(settings.least_moment);
             settings.total_mass = number("settotalmass").or(settings.total_mass);
         }
-        settings
+        (settings, unread)
     }
 
     /// The place and orientation of an element.

@@ -28,8 +28,9 @@ const MOST_ELEMENTS: usize = 1_000_000;
 pub(super) fn bodies(document: Element, path: &Path, root: Option<&Path>) -> Vec<Given> {
     let (document, refused) = include::resolve(document, path, root);
     let all = document.all();
+    let (compiler, unread) = Compiler::of(&all);
     let mut model = Model {
-        compiler: Compiler::of(&all),
+        compiler,
         defaults: Defaults::of(&document),
         meshes: Meshes::of(&all, path),
         found: Vec::new(),
@@ -39,6 +40,7 @@ pub(super) fn bodies(document: Element, path: &Path, root: Option<&Path>) -> Vec
     let mut bodies = model.found;
     model.compiler.adjust(&mut bodies);
     bodies.extend(refused);
+    bodies.extend(unread);
     bodies
 }
 
