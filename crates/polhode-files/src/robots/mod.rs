@@ -217,6 +217,24 @@ mod tests {
     }
 
     #[test]
+    fn a_place_or_a_moment_that_stands_twice_is_a_defect() {
+        let origins = "<origin xyz='1 0 0'/><origin xyz='0 0 0' rpy='0 0 0.5'/>";
+        let urdf = format!("<link name='a'><inertial>{origins}{TENSOR}</inertial></link>");
+        let sdf = |inertial: &str| format!("<link name='a'>{inertial}</link>");
+        let poses = INERTIAL.replace("<mass>", "<pose>1 0 0 0 0 0</pose><pose>0 0 0 0 0 0</pose><mass>");
+        let moments = INERTIAL.replace("<izz>", "<iyy>2.1</iyy><izz>");
+        for (language, text, tag) in [
+            (Language::Urdf, urdf, "origin"),
+            (Language::Sdf, sdf(&poses), "pose"),
+            (Language::Sdf, sdf(&moments), "iyy"),
+        ] {
+            let found = defects(language, &text);
+            assert_eq!(found.len(), 1, "{tag}");
+            assert_eq!(found[0].1, format!("model:1: <{tag}>: is there a second time; leave one out"));
+        }
+    }
+
+    #[test]
     fn a_name_that_stands_twice_is_a_defect() {
         let link = |name: &str| format!("<link name='{name}'><inertial>{TENSOR}</inertial></link>\n");
         // where a link is only named, it has no tensor

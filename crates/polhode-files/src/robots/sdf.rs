@@ -46,7 +46,7 @@ fn stated(inertial: &Element) -> Result<Option<Given>, String> {
             inertial.error("auto: inertia from the collision shapes is not computed; state <inertia>")
         );
     }
-    let [x, y, z, roll, pitch, yaw] = match inertial.child("pose") {
+    let [x, y, z, roll, pitch, yaw] = match inertial.single("pose")? {
         Some(pose) if pose.attribute("relative_to").is_some_and(|frame| !frame.is_empty()) => {
             return Err(pose.error("relative_to: poses in other frames are not read; give it in the link's"));
         }
@@ -59,7 +59,10 @@ fn stated(inertial: &Element) -> Result<Option<Given>, String> {
         return if value == 0.0 { Ok(None) } else { Err(inertial.error("<inertia> is missing")) };
     };
     let names = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
-    let children = names.map(|name| inertia.child(name));
+    let mut children = [None; 6];
+    for (child, name) in children.iter_mut().zip(names) {
+        *child = inertia.single(name)?;
+    }
     let mut entries = [0.0; 6];
     for (k, child) in children.iter().enumerate() {
         match child {

@@ -41,7 +41,7 @@ fn is_link(element: &Element) -> bool {
 
 /// What `<inertial>` states; a mass of zero with a tensor of zeros is none.
 fn stated(inertial: &Element) -> Result<Option<Given>, String> {
-    let (xyz, rpy) = match inertial.child("origin") {
+    let (xyz, rpy) = match inertial.single("origin")? {
         Some(origin) => (origin.optional::<3>("xyz")?, origin.optional::<3>("rpy")?),
         None => (None, None),
     };
