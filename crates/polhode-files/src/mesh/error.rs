@@ -93,6 +93,16 @@ pub enum MeshFileError {
         /// How many the header announces.
         announced: u64,
     },
+    /// A PLY goes on after the last element.
+    #[error(
+        "PLY announces {announced} of element {element} as its last, but more follows; a count is wrong, or another file follows"
+    )]
+    SurplusElements {
+        /// Name of the element.
+        element: String,
+        /// How many the header announces.
+        announced: u64,
+    },
     /// An element of a PLY has no properties, and its count can be any.
     #[error(
         "PLY announces {announced} of element {element}, which has no properties; is its header complete?"

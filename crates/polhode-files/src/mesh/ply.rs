@@ -119,6 +119,9 @@ pub(super) fn sized(reader: impl BufRead, size: Option<u64>) -> Result<Surface, 
             }
         }
     }
+    if let (Some(last), true) = (elements.last(), numbers.is_more()?) {
+        return Err(MeshFileError::SurplusElements { element: last.name.clone(), announced: last.count });
+    }
     Ok(mesh.finish()?)
 }
 
@@ -257,6 +260,22 @@ impl<R: BufRead> Numbers<R> {
             values.push(list);
         }
         Ok(values)
+    }
+
+    /// Whether a text goes on with more than blanks, and a binary file at all.
+    fn is_more(&mut self) -> Result<bool, MeshFileError> {
+        if self.encoding != Encoding::Text {
+            return Ok(self.number(Kind::U8)?.is_some());
+        }
+        if !self.words.is_empty() {
+            return Ok(true);
+        }
+        while let Some((_, text)) = self.lines.next()? {
+            if !text.trim().is_empty() {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 
     /// The next number; `None` at the end of the file.

@@ -70,6 +70,9 @@ fn ascii(reader: impl BufRead) -> Result<Surface, MeshFileError> {
         let mut words = text.split_ascii_whitespace();
         let syntax = |expected| MeshFileError::Syntax { line, found: beginning(text), expected };
         match words.next().map(str::to_ascii_lowercase).as_deref() {
+            Some("facet" | "outer" | "vertex" | "endloop" | "endfacet") if closed => {
+                return Err(syntax("'solid' or the end of the file"));
+            }
             Some("vertex") => {
                 let at = numbers(words).ok_or_else(|| syntax("'vertex x y z' with three numbers"))?;
                 corners.push(Vector3::from(at));

@@ -185,6 +185,11 @@ fn broken_files_name_the_byte_or_the_line() {
         "line 14: 'endfacet' where the third vertex of a facet, and no fourth, is expected"
     );
     assert_eq!(
+        message(format!("{text}facet normal 0 0 0\n")),
+        "line 87: 'facet normal 0 0 0' where 'solid' or the end of the file is expected"
+    );
+    assert!(mesh::stl(format!("{text}\n{text}\n").as_bytes()).is_ok());
+    assert_eq!(
         message(text.replacen("outer loop", "other loop", 1)),
         "line 3: 'other loop' where a line of an ASCII STL is expected"
     );
@@ -284,7 +289,14 @@ fn ply_files_are_read_in_every_encoding() {
         let bytes = ply(encoding);
         let message = from_ply(&bytes[..bytes.len() - 3]).unwrap_err().to_string();
         assert_eq!(message, "PLY is truncated: it ends in face 4 of 4", "{encoding}");
+        let message = from_ply(&bytes.repeat(2)[..]).unwrap_err().to_string();
+        let says = "PLY announces 4 of element face as its last, but more follows";
+        assert!(message.starts_with(says), "{encoding}: {message}");
     }
+    // blank lines are no more than that
+    let mut padded = ply("ascii");
+    padded.extend(b"\n \r\n");
+    assert!(from_ply(&padded[..]).is_ok());
     let message = |text: &str| from_ply(text.as_bytes()).unwrap_err().to_string();
     let head = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n\
                 element face 1\nproperty list uint int vertex_index\nend_header\n0 0 0\n";
