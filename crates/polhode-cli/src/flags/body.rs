@@ -137,6 +137,19 @@ impl BodyArguments {
         self.named().filter(|text| bodies::is_mesh(text))
     }
 
+    /// Refuses a mesh, which has no mass, where a force acts; warns of ratios of moments where what acts `is_sized`, as in N m.
+    pub(crate) fn check_size(&self, is_force: bool, is_sized: bool) -> Result<(), Error> {
+        if let (Some(file), true) = (self.mesh(), is_force) {
+            let rule = "a mesh file tells no mass, and a force acts on one";
+            let remedy = "write a TOML file with the mesh as a [[part]] with its mass";
+            return Err(Error::input("--body", file, rule, remedy));
+        }
+        if is_sized {
+            self.named().into_iter().for_each(warn_of_ratios);
+        }
+        Ok(())
+    }
+
     /// What a title calls the body.
     pub(crate) fn label(&self) -> String {
         match (self.moments, &self.body) {

@@ -5,7 +5,7 @@ use polhode::body::{Body, Point, Problem};
 use polhode::num::Dd;
 use polhode_files::error::{Error, tell};
 
-use crate::flags::body::{BodyArguments, warn_of_ratios};
+use crate::flags::body::BodyArguments;
 use crate::flags::force::ForceArguments;
 use crate::flags::start::StartArguments;
 use crate::flags::wheel::WheelArguments;
@@ -34,14 +34,7 @@ pub(crate) struct MotionArguments {
 impl MotionArguments {
     /// The body with all that acts on it, of a motion that starts at the time `t`, s.
     pub(crate) fn body(&self, t: f64) -> Result<Body, Error> {
-        if let (Some(file), true) = (self.body.mesh(), self.forces.is_any()) {
-            let rule = "a mesh file tells no mass, and a force acts on one";
-            let remedy = "write a TOML file with the mesh as a [[part]] with its mass";
-            return Err(Error::input("--body", file, rule, remedy));
-        }
-        if self.forces.is_sized() || self.wheels.is_any() {
-            self.body.named().into_iter().for_each(warn_of_ratios);
-        }
+        self.body.check_size(self.forces.is_any(), self.forces.is_sized() || self.wheels.is_any())?;
         let own = self.body.own_orbit().map(|(orbit, _)| orbit);
         let (body, of_file) = self.body.heavy(self.forces.weight_moment)?;
         let body = self.forces.act_on(body, own)?;

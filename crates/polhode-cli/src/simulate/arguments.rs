@@ -55,6 +55,15 @@ impl DisturbanceArguments {
         self.known_torque
     }
 
+    /// Whether a torque acts that does not grow with the body, or a wheel.
+    pub(super) fn is_sized(&self) -> bool {
+        self.drag.is_some()
+            || self.torque.is_some()
+            || self.known_torque.is_some()
+            || self.torque_noise > 0.0
+            || self.has_wheel()
+    }
+
     pub(super) fn has_wheel(&self) -> bool {
         self.wheel_momentum.is_some() || self.wheel_rate.is_some()
     }

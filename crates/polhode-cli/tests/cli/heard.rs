@@ -281,3 +281,23 @@ fn attitudes_from_space_to_body_say_so_in_their_names() {
     let answer = run(&format!("audit {lie} {BODY}"));
     assert!(answer.code == 1 && answer.err.contains("transposed"), "{answer:?}");
 }
+
+#[test]
+fn a_torque_needs_the_mass_of_a_mesh() {
+    let scratch = Scratch::new("heard-mesh");
+    let corner = "v 0 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    let mesh = scratch.file("corner.obj", corner);
+    let record = written(&scratch, "poses.csv", "t,q", "t,q_w,q_x,q_y,q_z");
+    let line = "simulate --omega 1,9,2 --until 1 --every 0.1";
+    let says = ["--body", "a mesh file tells no mass"];
+    for flags in ["--torque 0.1,0,0", "--known-torque 0.1,0,0", "--wheel-momentum 0,0,0.1"] {
+        refused(&format!("{line} --body {mesh} {flags}"), &says);
+        let answer = run(&format!("{line} --body racket {flags}"));
+        assert!(answer.code == 0 && answer.err.contains("ratios of moments"), "{flags}: {answer:?}");
+    }
+    refused(&format!("audit {record} --body {mesh} --torque-body 0.1,0,0"), &says);
+    // what acts in proportion to the body needs no mass
+    for body in [mesh.as_str(), "racket"] {
+        output(&format!("{line} --body {body} --relative-drag 0.2"));
+    }
+}
