@@ -255,6 +255,11 @@ impl Place {
         match (self.unit, number.parse::<f64>()) {
             (Some(unit), Ok(value)) if value.is_finite() => Ok(unit.seconds(value)),
             _ => seconds(&number, epoch).map_err(|error| match error.split_once("; ") {
+                // why it is no date, or cannot count from that of t = 0
+                Some((reason, remedy)) if epoch.is_some() => line
+                    .refused(Rule::Other(reason.into()))
+                    .in_column(self.column, &self.name)
+                    .with_remedy(remedy),
                 Some((_, remedy))
                     if number.parse::<f64>().is_err()
                         && !error.contains(" is a date")
@@ -471,6 +476,16 @@ mod tests {
             ("t,b\n1,2\n2025-01-01,5\n", None, ", line 3, column 1 (t): '2025-01-01' is a date; give"),
         ] {
             let error = read(text, wanted, None).unwrap_err();
+            assert!(error.starts_with(says), "{text:?}: {error}");
+        }
+        for (text, says) in [
+            (
+                "time,mag\n2024-03-31T01:59:59,1\n",
+                ", line 2, column 1 (time): '2024-03-31T01:59:59': one date is in UTC and the other has no time scale",
+            ),
+            ("t\n2024-03-32Z\n", ", line 2, column 1 (t): '2024-03-32Z' is not a date: "),
+        ] {
+            let error = read(text, None, Some("2024-03-31T00:00Z")).unwrap_err();
             assert!(error.starts_with(says), "{text:?}: {error}");
         }
         assert!(read("b\n1\n", Some("b"), None).is_ok());
