@@ -48,7 +48,7 @@ fn a_body_of_inertia_goes_into_every_command() {
 
 #[test]
 fn a_link_of_a_model_is_named_behind_a_colon() {
-    let scratch = Scratch::new("links");
+    let scratch = Scratch::new("compose-links");
     let link = |name: &str, xx: f64| {
         format!(
             "<link name='{name}'><inertial><origin xyz='0 0 1' rpy='0 0 1.5707963267948966'/><mass value='1'/>\
