@@ -14,6 +14,8 @@ pub(crate) struct Dump<'t> {
     rows: Option<u64>,
     /// Rows of the block that are left, and of how many.
     left: (u64, u64),
+    /// Whether the present line is of the rows of a block.
+    is_in_rows: bool,
     /// The time of the block.
     now: String,
     /// The columns of the first block.
@@ -24,8 +26,8 @@ impl<'t> Dump<'t> {
     /// Of lines whose first, `item`, was read.
     pub(crate) fn new(lines: Lines<'t>, item: &str) -> Self {
         let item = item.strip_prefix("ITEM:").map(|item| item.trim().to_string());
-        let now = String::new();
-        Self { lines, item, step: None, time: None, rows: None, left: (0, 0), now, names: None }
+        let (now, is_in_rows) = (String::new(), false);
+        Self { lines, item, step: None, time: None, rows: None, left: (0, 0), is_in_rows, now, names: None }
     }
 
     /// Reads the header, then a row for each atom or entry.
@@ -39,7 +41,16 @@ impl<'t> Dump<'t> {
                         Err(self.lines.refused(Rule::Rows))
                     };
                 }
-                self.item = self.lines.text.trim().strip_prefix("ITEM:").map(|item| item.trim().to_string());
+                let text = self.lines.text.trim();
+                self.item = text.strip_prefix("ITEM:").map(|item| item.trim().to_string());
+                if self.is_in_rows && self.item.is_none() && !text.is_empty() {
+                    let rule = format!("one row more than the {} that the block announces", self.left.1);
+                    return Err(self
+                        .lines
+                        .refused(Rule::Other(rule))
+                        .with_remedy("correct ITEM: NUMBER OF ATOMS, or leave the row out"));
+                }
+                self.is_in_rows &= self.item.is_none();
                 continue;
             };
             match item.as_str() {
@@ -68,7 +79,7 @@ impl<'t> Dump<'t> {
                     };
                     let names: Vec<&str> = text.split_whitespace().skip(1).collect();
                     let names = format!("{name} {}", names.join(" "));
-                    (self.now, self.left) = (time, (rows, rows));
+                    (self.now, self.left, self.is_in_rows) = (time, (rows, rows), true);
                     match &self.names {
                         None => {
                             line.text.clone_from(&names);

@@ -57,6 +57,9 @@ fn dumps_and_ids_part_the_bodies() {
              7 {step} 0 0 1 1 2 3\n3 1 0 0 0 4 5 6\n"
         )
     };
+    // the second row would not be read
+    let error = found(&block(0).replace("ATOMS\n2", "ATOMS\n1"), "").unwrap_err();
+    assert!(error.starts_with(", line 11: one row more than the 1 that the block announces"), "{error}");
     let found = found(&(block(0) + &block(100)), "").unwrap();
     assert!(found.counts_steps);
     assert_eq!(found.bodies[0].0.as_deref(), Some("7"));
