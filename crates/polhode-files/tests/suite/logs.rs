@@ -146,6 +146,12 @@ fn robots() {
         + &message("1727600001", "5000000", ["0.25", "1", "-2"]);
     check("ros2 topic echo", &echoed, 1.0);
     check("rostopic echo", &echoed.replace("nanosec", "nsecs").replace("sec:", "secs:"), 1.0);
+    let lacking = echoed.replacen("angular_velocity:\n  x: 0.5\n  y: -1\n  z: 2\n", "", 1);
+    let refused = record::read(&lacking, "log", &ReadOptions::default()).unwrap_err().to_string();
+    assert!(
+        refused.starts_with("log, line 15, column 7 (angular_velocity.x): a number is missing"),
+        "{refused}"
+    );
 }
 
 #[test]
