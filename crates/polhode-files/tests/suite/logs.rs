@@ -327,6 +327,36 @@ fn loggers_of_the_second_review() {
 }
 
 #[test]
+fn lines_above_the_rows_tell_the_rate_of_the_gyroscope() {
+    let read_at = |lines: &str| {
+        let text = format!("{lines}\nCounter;Gyr_X;Gyr_Y;Gyr_Z\n7;0,5;-1;2\n8;0,25;1;-2\n");
+        let found = record::read(&text, "log", &ReadOptions::default());
+        found.map(|found| found.read_as.sample_rate.unwrap()).map_err(|error| error.to_string())
+    };
+    for (lines, rate) in [
+        ("// Update Rate: 37,5Hz", 37.5),
+        ("// Update Rate = 37.5 Hz", 37.5),
+        ("Sample rate,100", 100.0),
+        ("// Gyroscope sample rate: 100 Hz\n// Accelerometer sample rate: 50 Hz", 100.0),
+        ("// Mag sample rate=20\n// Gyroscope and accelerometer sample rate: 100 Hz", 100.0),
+        ("// Sample rate: 100 Hz\n// Update rate: 100.0Hz", 100.0),
+    ] {
+        let found = read_at(lines).unwrap_or_else(|error| panic!("{lines}: {error}"));
+        assert!((found - rate).abs() < 1e-9 * rate, "{lines}: {found}");
+    }
+    for lines in [
+        "// Sample rate: 100 Hz\n// Update rate: 50 Hz",
+        "// Magnetometer sample rate=20",
+        "// GPS update rate: 5 Hz",
+        "// Sample rate: 1,000 Hz",
+        "// Sample rate: 100 Hz, decimated by 10",
+    ] {
+        let refused = read_at(lines).unwrap_err();
+        assert!(refused.contains("(Counter): counts samples"), "{lines}: {refused}");
+    }
+}
+
+#[test]
 fn a_counter_needs_the_rate_of_its_samples() {
     let text = "Packet number,Gyroscope X (deg/s),Gyroscope Y (deg/s),Gyroscope Z (deg/s)\n7,0.5,-1,2\n8,0.25,1,-2\n";
     let refused = record::read(text, "log", &ReadOptions::default()).unwrap_err().to_string();
