@@ -1,13 +1,30 @@
 //! Dumps of LAMMPS as rows: blocks of atoms or of local entries, each with a time step and, where it was asked for, a time.
 
+use polhode::units::TimeUnit;
+
 use super::lines::{Line, Lines};
 use crate::error::{Rule, TableError};
+
+/// Styles of units, and the unit of time of each; `lj` is without dimension.
+const STYLES: [(&str, Option<TimeUnit>); 8] = [
+    ("lj", None),
+    ("real", Some(TimeUnit::Multiple(1e-15))),
+    ("metal", Some(TimeUnit::Multiple(1e-12))),
+    ("si", Some(TimeUnit::Seconds)),
+    ("cgs", Some(TimeUnit::Seconds)),
+    ("electron", Some(TimeUnit::Multiple(1e-15))),
+    ("micro", Some(TimeUnit::Microseconds)),
+    ("nano", Some(TimeUnit::Nanoseconds)),
+];
+const STYLE_NAMES: &str = "lj, real, metal, si, cgs, electron, micro, nano";
 
 /// Blocks of a dump; each atom or entry is a row, with the time of its block in front.
 pub(crate) struct Dump<'t> {
     pub(crate) lines: Lines<'t>,
     /// The item that was read last.
     item: Option<String>,
+    /// The unit of time, where the dump names its units.
+    unit: Option<TimeUnit>,
     /// What the block says before its rows.
     step: Option<String>,
     time: Option<String>,
@@ -26,8 +43,23 @@ impl<'t> Dump<'t> {
     /// Of lines whose first, `item`, was read.
     pub(crate) fn new(lines: Lines<'t>, item: &str) -> Self {
         let item = item.strip_prefix("ITEM:").map(|item| item.trim().to_string());
-        let (now, is_in_rows) = (String::new(), false);
-        Self { lines, item, step: None, time: None, rows: None, left: (0, 0), is_in_rows, now, names: None }
+        Self {
+            lines,
+            item,
+            unit: None,
+            step: None,
+            time: None,
+            rows: None,
+            left: (0, 0),
+            is_in_rows: false,
+            now: String::new(),
+            names: None,
+        }
+    }
+
+    /// The unit of the times in front of the rows, where the dump names its units and has times.
+    pub(crate) fn time_unit(&self) -> Option<TimeUnit> {
+        self.unit.filter(|_| self.names.as_ref().is_some_and(|names| names.starts_with("t ")))
     }
 
     /// Reads the header, then a row for each atom or entry.
@@ -54,6 +86,15 @@ impl<'t> Dump<'t> {
                 continue;
             };
             match item.as_str() {
+                "UNITS" => {
+                    self.lines.advance()?;
+                    let text = self.lines.text.trim();
+                    let Some((_, unit)) = STYLES.iter().find(|(style, _)| *style == text) else {
+                        let refused = self.lines.refused(Rule::KnownUnit(STYLE_NAMES)).value(text);
+                        return Err(refused.with_remedy("write the style of units of the run"));
+                    };
+                    self.unit = *unit;
+                }
                 "TIMESTEP" => self.step = Some(self.number()?),
                 "TIME" => self.time = Some(self.number()?),
                 "NUMBER OF ATOMS" | "NUMBER OF ENTRIES" => self.rows = self.number()?.parse().ok(),
@@ -95,7 +136,7 @@ impl<'t> Dump<'t> {
                         Some(_) => {}
                     }
                 }
-                // bounds of the box, units: of no interest here
+                // bounds of the box: of no interest here
                 _ => {}
             }
         }
