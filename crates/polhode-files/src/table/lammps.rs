@@ -164,7 +164,8 @@ impl<'t> Dump<'t> {
     }
 }
 
-/// Names of columns without the marks of computes, fixes and variables; four components of one compute are a quaternion.
+/// Names of columns without the marks of computes, fixes and variables; four components of one compute are a quaternion, scalar
+/// first but for `orient`, which the documentation of OVITO has scalar last: its order is open.
 pub(crate) fn spelled(columns: &[String]) -> Vec<String> {
     fn part(name: &str) -> Option<(&str, &str)> {
         name.strip_suffix(']')?.rsplit_once('[')
@@ -176,6 +177,7 @@ pub(crate) fn spelled(columns: &[String]) -> Vec<String> {
         stripped.unwrap_or(name).to_string()
     };
     let name = |name: &String| match part(name) {
+        Some(("c_orient", number)) if size("c_orient") == 4 => format!("q_{number}"),
         Some((stem, number)) if size(stem) == 4 => {
             let letters = ["w", "x", "y", "z"];
             let letter = number.parse::<usize>().ok().and_then(|n| letters.get(n.checked_sub(1)?));
@@ -192,9 +194,10 @@ mod tests {
 
     #[test]
     fn four_components_of_a_compute_are_a_quaternion() {
-        let header = "id type c_orient[1] c_orient[2] c_orient[3] c_orient[4] angmomx c_omega[1] v_k";
-        let columns: Vec<String> = header.split_whitespace().map(String::from).collect();
-        let names = spelled(&columns);
-        assert_eq!(names, ["id", "type", "q_w", "q_x", "q_y", "q_z", "angmomx", "omega[1]", "k"]);
+        let header = "id type c_quat[1] c_quat[2] c_quat[3] c_quat[4] angmomx c_omega[1] v_k";
+        let of = |header: &str| spelled(&header.split_whitespace().map(String::from).collect::<Vec<_>>());
+        assert_eq!(of(header), ["id", "type", "q_w", "q_x", "q_y", "q_z", "angmomx", "omega[1]", "k"]);
+        let names = of(&header.replace("c_quat", "c_orient"));
+        assert_eq!(names[2..6], ["q_1", "q_2", "q_3", "q_4"]);
     }
 }
