@@ -318,7 +318,9 @@ fn groups(names: &[Name]) -> Result<Vec<Group>, Rule> {
                 }
                 let units =
                     places.iter().zip(&targets).map(|(&k, target)| names[k].unit_behind(target, endings));
-                let (units, frame, direction) = (units.collect(), frame(stem), direction(stem));
+                let behind = || frame(targets[0].strip_prefix(stem)?.strip_prefix('x')?);
+                let frame = if stem.is_empty() { None } else { frame(stem).or_else(behind) };
+                let (units, direction) = (units.collect(), direction(stem));
                 let (quantity, yields) = (spelling.quantity, spelling.yields);
                 let angle_axes = (targets[0] == "roll").then_some([0, 1, 2]);
                 found.push(Group { quantity, places, units, frame, direction, angle_axes, stem, yields });
@@ -485,5 +487,11 @@ mod tests {
         let header = Header::of(&cells, &ColumnNames::default(), false).unwrap();
         let rates = header.bodies[0].rates.as_ref().unwrap();
         assert_eq!((rates.frame, rates.units[0].as_deref()), (Some(Frame::Space), Some("deg/s")));
+        for (of, frame) in [("body", Frame::Body), ("space", Frame::Space), ("world", Frame::Space)] {
+            let cells = ["t".to_string(), format!("wx_{of}"), format!("wy_{of}"), format!("wz_{of}")];
+            let header = Header::of(&cells, &ColumnNames::default(), false).unwrap();
+            let rates = header.bodies[0].rates.as_ref().unwrap();
+            assert_eq!((rates.frame, &rates.places[..]), (Some(frame), &[1, 2, 3][..]), "{of}");
+        }
     }
 }
