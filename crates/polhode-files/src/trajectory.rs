@@ -57,7 +57,8 @@ impl FoundTrajectory {
 ///
 /// Rows hold a time and an attitude (quaternion, matrix, Euler angles, modified Rodrigues parameters), an angular velocity or
 /// an angular momentum, in columns of any common names; several bodies by a column `id`, by the `qpos` and `qvel` of MuJoCo, or
-/// in a dump of LAMMPS. Times are in s; other numbers are as they stand, with what their names [claim](FoundTrajectory::claims).
+/// in a dump of LAMMPS. Times are in s; other numbers are as they stand, with what their names [claim](FoundTrajectory::claims),
+/// and in a dump that names its units brought to s as its times are.
 ///
 /// ```
 /// use polhode::audit::QuaternionOrder;
@@ -399,7 +400,8 @@ impl Body {
             rows.push(rates.take::<3>(table, group)?.map(|rate| rate * scale));
         }
         if let (Some(group), Some(rows)) = (&columns.momentum, &mut self.momentum) {
-            rows.push(momenta.take(table, group)?);
+            let scale = table.scale(group.places[0]);
+            rows.push(momenta.take::<3>(table, group)?.map(|momentum| momentum * scale));
         }
         Ok(())
     }

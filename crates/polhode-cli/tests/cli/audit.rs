@@ -450,7 +450,13 @@ fn a_second_attitude_that_is_not_read_is_no_part_of_a_verdict() {
     let mut lines = text.lines();
     let header = format!("{},box2_qw,box2_qx,box2_qy,box2_qz\n", lines.next().unwrap());
     let rows: String = lines.map(|row| format!("{row},1,0,0,0\n")).collect();
-    let file = scratch.file("two.csv", header + &rows);
+    let table = header + &rows;
+    for stem in ["box2.q", "/box2/orientation/", "box2_orientation_"] {
+        let file = scratch.file("other.csv", table.replace("box2_q", stem));
+        let columns = format!("the columns {stem}w, {stem}x, {stem}y, {stem}z hold another attitude");
+        refused(&format!("audit {file} --moments 1,2,3"), &["other.csv", columns.as_str()]);
+    }
+    let file = scratch.file("two.csv", table);
     refused(
         &format!("audit {file} --moments 1,2,3"),
         &["two.csv", "the columns box2_qw, box2_qx, box2_qy, box2_qz hold another attitude", "--columns"],

@@ -133,22 +133,32 @@ struct Owner {
     name: String,
     /// The first names that came before it.
     earlier: Vec<String>,
+    /// Whether the first name has had more than one row, as that of a counter has not.
+    is_first_of_several: bool,
 }
 
 /// Names that are kept: of more bodies in turn the first would come again.
 const KEPT: usize = 64;
 
 impl Owner {
-    /// Refuses rows of several bodies, whose names come again; those of a counter do not.
+    /// Refuses rows of several bodies, whose names stand in several rows; those of a counter do not.
     fn check(&mut self, table: &Table) -> Result<(), TableError> {
         let Some(id) = table.header.id else { return Ok(()) };
         let name = table.cell(id);
         if name == self.name {
+            // no name comes before the first
+            self.is_first_of_several |= self.earlier.len() == 1;
             return Ok(());
         }
         if !name.is_empty() && self.earlier.iter().any(|earlier| earlier == name) {
             let rule = format!("rows of '{}' lie between rows of this body", visible(&self.name));
             return Err(table.refused_cell(id, Rule::Other(rule)).with_remedy("name a file of one body"));
+        }
+        if !name.is_empty() && self.is_first_of_several {
+            let first = self.earlier.get(1).unwrap_or(&self.name);
+            let rule = format!("rows of '{}' come before rows of this body", visible(first));
+            let remedy = "name a file of one body, or rename the column if it names no bodies";
+            return Err(table.refused_cell(id, Rule::Other(rule)).with_remedy(remedy));
         }
         if self.earlier.len() < KEPT {
             self.earlier.push(self.name.clone());

@@ -98,8 +98,13 @@ impl<R: BufRead> Read for ArrayText<R> {
 
 impl<R: BufRead> BufRead for ArrayText<R> {
     fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        if self.at == self.text.len() && self.row < self.head.rows {
-            self.print_row()?;
+        if self.at == self.text.len() {
+            if self.row < self.head.rows {
+                self.print_row()?;
+            } else if !self.inner.fill_buf()?.is_empty() {
+                let rows = self.head.rows;
+                return Err(refused(format!("bytes are behind the last of its {rows} rows; save one array")));
+            }
         }
         Ok(&self.text[self.at..])
     }
@@ -236,6 +241,16 @@ mod tests {
         let head = "{'descr': [('t', '>i4'), ('q', '<f4', (2,))], 'fortran_order': False, 'shape': (1,), }";
         let row = [(-7_i32).to_be_bytes(), 0.1_f32.to_le_bytes(), 1_f32.to_le_bytes()].concat();
         assert_eq!(read(&file(head, &row)).unwrap(), "t,q_0,q_1\n-7,0.1,1.0\n");
+    }
+
+    #[test]
+    fn what_is_behind_an_array_is_refused() {
+        let one = file("{'descr': '<f8', 'fortran_order': False, 'shape': (2,), }", &[0; 16]);
+        assert_eq!(read(&one).unwrap(), "0.0\n0.0\n");
+        for more in [&one[..], b"\n"] {
+            let message = read(&[&one[..], more].concat()).unwrap_err().to_string();
+            assert!(message.contains("behind the last of its 2 rows"), "{message}");
+        }
     }
 
     #[test]

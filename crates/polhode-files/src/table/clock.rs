@@ -3,6 +3,7 @@
 use polhode::units::Date;
 use polhode::units::{RateUnit, TimeUnit};
 
+use super::cells::may_part_thousands;
 use super::lines::Line;
 use super::name::Name;
 use crate::read_as::NamedBy;
@@ -86,7 +87,7 @@ impl Clock {
 pub(crate) struct Preamble {
     /// Of a gyroscope in the units of its converter, deg/s.
     gyro_scale: Option<f64>,
-    /// Samples a second.
+    /// Samples a second; `None` also where lines tell two.
     rate: Option<f64>,
     /// An Xsens DOT, whose clock counts microseconds and whose rates are in deg/s.
     is_dot: bool,
@@ -95,18 +96,22 @@ pub(crate) struct Preamble {
 impl Preamble {
     pub(crate) fn of(lines: &[Line]) -> Self {
         let mut found = Preamble::default();
+        let mut rates: Vec<Option<f64>> = Vec::new();
         for line in lines {
             let lower = line.text.to_lowercase();
             let value = || lower.rsplit([':', ',', '=']).next().unwrap_or_default().trim_matches(['"', ' ']);
             if lower.contains("gyro_scale") || lower.contains("gyroscale") {
                 found.gyro_scale = scale(value());
             } else if lower.contains("sample rate") || lower.contains("update rate") {
-                found.rate =
-                    value().trim_end_matches("hz").trim_end().parse().ok().filter(|rate| *rate > 0.0);
+                if !is_of_another_sensor(&lower) {
+                    rates.push(rate(&lower));
+                }
             } else if lower.contains("devicetag") {
                 found.is_dot = true;
             }
         }
+        let first = rates.first().copied().flatten();
+        found.rate = first.filter(|first| rates.iter().all(|other| *other == Some(*first)));
         found
     }
 
@@ -131,6 +136,26 @@ impl Preamble {
         let is_raw = |_: &f64| name.to_lowercase().starts_with("gyroadc[") && !name.contains('(');
         self.gyro_scale.filter(is_raw).unwrap_or(1.0)
     }
+}
+
+/// Whether a line in lower case is of a sensor beside the gyroscope.
+fn is_of_another_sensor(line: &str) -> bool {
+    let names = |word: &str| {
+        ["accel", "magn", "baro", "gps", "gnss"].iter().any(|stem| word.starts_with(stem))
+            || ["acc", "mag"].contains(&word)
+    };
+    !line.contains("gyr") && line.split(|c: char| !c.is_alphanumeric()).any(names)
+}
+
+/// Samples a second behind the last colon or equals sign of a line in lower case, or else behind its first comma; a comma within
+/// the number is a decimal one.
+fn rate(line: &str) -> Option<f64> {
+    let marks = ['"', ' ', ','];
+    let told = line.rsplit_once([':', '=']).or_else(|| line.split_once(','));
+    let value = told.map_or(line, |(_, value)| value);
+    let value = value.trim_matches(marks).trim_end_matches("hz").trim_matches(marks);
+    let rate = if may_part_thousands(value) { None } else { value.replace(',', ".").parse::<f64>().ok() };
+    rate.filter(|rate| *rate > 0.0)
 }
 
 /// Betaflight's scale in deg/s: the bits of a float, or a number; what is tiny is in rad/µs.

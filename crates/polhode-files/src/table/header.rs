@@ -318,7 +318,9 @@ fn groups(names: &[Name]) -> Result<Vec<Group>, Rule> {
                 }
                 let units =
                     places.iter().zip(&targets).map(|(&k, target)| names[k].unit_behind(target, endings));
-                let (units, frame, direction) = (units.collect(), frame(stem), direction(stem));
+                let behind = || frame(targets[0].strip_prefix(stem)?.strip_prefix('x')?);
+                let frame = if stem.is_empty() { None } else { frame(stem).or_else(behind) };
+                let (units, direction) = (units.collect(), direction(stem));
                 let (quantity, yields) = (spelling.quantity, spelling.yields);
                 let angle_axes = (targets[0] == "roll").then_some([0, 1, 2]);
                 found.push(Group { quantity, places, units, frame, direction, angle_axes, stem, yields });
@@ -329,18 +331,24 @@ fn groups(names: &[Name]) -> Result<Vec<Group>, Rule> {
     Ok(found)
 }
 
-/// Bodies whose names stand in front of their quantities, as in the states of Drake: `model_body_qw`; those that have an attitude.
+/// Bodies whose names stand in front of their quantities, as in the states of Drake and in topics: `model_body_qw`,
+/// `/imu/orientation/w`; those that have an attitude.
 fn owned(names: &[Name]) -> Result<Option<Vec<Columns>>, Rule> {
-    let parts: Vec<Option<(&str, &str)>> = names.iter().map(|name| name.text.rsplit_once('_')).collect();
-    let mut owners: Vec<&str> = parts.iter().flatten().map(|(owner, _)| *owner).collect();
+    // any mark may be the end of the name of the body
+    let mut parts: Vec<(usize, &str, &str)> = Vec::new();
+    for (place, name) in names.iter().enumerate() {
+        let text = name.text.as_str();
+        let ends = text.match_indices(['_', '.', '/']);
+        parts.extend(ends.map(|(at, _)| (place, &text[..at], &text[at + 1..])));
+    }
+    let mut owners: Vec<&str> = parts.iter().map(|(_, owner, _)| *owner).collect();
     owners.sort_unstable();
     owners.dedup();
     let mut bodies = Vec::new();
     for owner in owners {
-        let own = |(place, part): (usize, &Option<(&str, &str)>)| {
-            part.filter(|part| part.0 == owner).map(|(_, quantity)| (place, Name::of(quantity)))
-        };
-        let (places, own): (Vec<usize>, Vec<Name>) = parts.iter().enumerate().filter_map(own).unzip();
+        let own = parts.iter().filter(|part| part.1 == owner);
+        let (places, own): (Vec<usize>, Vec<Name>) =
+            own.map(|(place, _, quantity)| (*place, Name::of(quantity))).unzip();
         let mut columns = Columns::of(groups(&own)?, &own)?;
         if columns.attitude.as_ref().is_some_and(|attitude| !attitude.yields) {
             let groups = [&mut columns.attitude, &mut columns.rates, &mut columns.momentum];
@@ -350,6 +358,11 @@ fn owned(names: &[Name]) -> Result<Option<Vec<Columns>>, Rule> {
             bodies.push(Columns { label: Some(owner.to_string()), ..columns });
         }
     }
+    // `a_euler_angle_x` is `euler_angle_x` of a and `angle_x` of a_euler
+    bodies.dedup_by(|later: &mut Columns, before: &mut Columns| {
+        let places = |body: &Columns| body.attitude.as_ref().map(|group| group.places.clone());
+        places(later) == places(before)
+    });
     if let [alone] = &mut bodies[..] {
         alone.label = None;
     }
@@ -439,6 +452,14 @@ mod tests {
             ),
             [(Quaternion, vec![1, 2, 3, 4]), (Rates, vec![8, 9, 10])]
         );
+        assert_eq!(
+            found("time,/imu/orientation/x,/imu/orientation/y,/imu/orientation/z,/imu/orientation/w"),
+            [(Quaternion, vec![4, 1, 2, 3])]
+        );
+        assert_eq!(
+            found("t,body.qw,body.qx,body.qy,body.qz,body.wx,body.wy,body.wz"),
+            [(Quaternion, vec![1, 2, 3, 4]), (Rates, vec![5, 6, 7])]
+        );
         assert_eq!(found("t,a,b"), []);
     }
 
@@ -466,5 +487,11 @@ mod tests {
         let header = Header::of(&cells, &ColumnNames::default(), false).unwrap();
         let rates = header.bodies[0].rates.as_ref().unwrap();
         assert_eq!((rates.frame, rates.units[0].as_deref()), (Some(Frame::Space), Some("deg/s")));
+        for (of, frame) in [("body", Frame::Body), ("space", Frame::Space), ("world", Frame::Space)] {
+            let cells = ["t".to_string(), format!("wx_{of}"), format!("wy_{of}"), format!("wz_{of}")];
+            let header = Header::of(&cells, &ColumnNames::default(), false).unwrap();
+            let rates = header.bodies[0].rates.as_ref().unwrap();
+            assert_eq!((rates.frame, &rates.places[..]), (Some(frame), &[1, 2, 3][..]), "{of}");
+        }
     }
 }

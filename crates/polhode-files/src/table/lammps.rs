@@ -1,19 +1,38 @@
 //! Dumps of LAMMPS as rows: blocks of atoms or of local entries, each with a time step and, where it was asked for, a time.
 
+use polhode::units::TimeUnit;
+
 use super::lines::{Line, Lines};
 use crate::error::{Rule, TableError};
+
+/// Styles of units, and the unit of time of each; `lj` is without dimension.
+const STYLES: [(&str, Option<TimeUnit>); 8] = [
+    ("lj", None),
+    ("real", Some(TimeUnit::Multiple(1e-15))),
+    ("metal", Some(TimeUnit::Multiple(1e-12))),
+    ("si", Some(TimeUnit::Seconds)),
+    ("cgs", Some(TimeUnit::Seconds)),
+    ("electron", Some(TimeUnit::Multiple(1e-15))),
+    ("micro", Some(TimeUnit::Microseconds)),
+    ("nano", Some(TimeUnit::Nanoseconds)),
+];
+const STYLE_NAMES: &str = "lj, real, metal, si, cgs, electron, micro, nano";
 
 /// Blocks of a dump; each atom or entry is a row, with the time of its block in front.
 pub(crate) struct Dump<'t> {
     pub(crate) lines: Lines<'t>,
     /// The item that was read last.
     item: Option<String>,
+    /// The unit of time, where the dump names its units.
+    unit: Option<TimeUnit>,
     /// What the block says before its rows.
     step: Option<String>,
     time: Option<String>,
     rows: Option<u64>,
     /// Rows of the block that are left, and of how many.
     left: (u64, u64),
+    /// Whether the present line is of the rows of a block.
+    is_in_rows: bool,
     /// The time of the block.
     now: String,
     /// The columns of the first block.
@@ -24,8 +43,23 @@ impl<'t> Dump<'t> {
     /// Of lines whose first, `item`, was read.
     pub(crate) fn new(lines: Lines<'t>, item: &str) -> Self {
         let item = item.strip_prefix("ITEM:").map(|item| item.trim().to_string());
-        let now = String::new();
-        Self { lines, item, step: None, time: None, rows: None, left: (0, 0), now, names: None }
+        Self {
+            lines,
+            item,
+            unit: None,
+            step: None,
+            time: None,
+            rows: None,
+            left: (0, 0),
+            is_in_rows: false,
+            now: String::new(),
+            names: None,
+        }
+    }
+
+    /// The unit of the times in front of the rows, where the dump names its units and has times.
+    pub(crate) fn time_unit(&self) -> Option<TimeUnit> {
+        self.unit.filter(|_| self.names.as_ref().is_some_and(|names| names.starts_with("t ")))
     }
 
     /// Reads the header, then a row for each atom or entry.
@@ -39,10 +73,28 @@ impl<'t> Dump<'t> {
                         Err(self.lines.refused(Rule::Rows))
                     };
                 }
-                self.item = self.lines.text.trim().strip_prefix("ITEM:").map(|item| item.trim().to_string());
+                let text = self.lines.text.trim();
+                self.item = text.strip_prefix("ITEM:").map(|item| item.trim().to_string());
+                if self.is_in_rows && self.item.is_none() && !text.is_empty() {
+                    let rule = format!("one row more than the {} that the block announces", self.left.1);
+                    return Err(self
+                        .lines
+                        .refused(Rule::Other(rule))
+                        .with_remedy("correct ITEM: NUMBER OF ATOMS, or leave the row out"));
+                }
+                self.is_in_rows &= self.item.is_none();
                 continue;
             };
             match item.as_str() {
+                "UNITS" => {
+                    self.lines.advance()?;
+                    let text = self.lines.text.trim();
+                    let Some((_, unit)) = STYLES.iter().find(|(style, _)| *style == text) else {
+                        let refused = self.lines.refused(Rule::KnownUnit(STYLE_NAMES)).value(text);
+                        return Err(refused.with_remedy("write the style of units of the run"));
+                    };
+                    self.unit = *unit;
+                }
                 "TIMESTEP" => self.step = Some(self.number()?),
                 "TIME" => self.time = Some(self.number()?),
                 "NUMBER OF ATOMS" | "NUMBER OF ENTRIES" => self.rows = self.number()?.parse().ok(),
@@ -68,7 +120,7 @@ impl<'t> Dump<'t> {
                     };
                     let names: Vec<&str> = text.split_whitespace().skip(1).collect();
                     let names = format!("{name} {}", names.join(" "));
-                    (self.now, self.left) = (time, (rows, rows));
+                    (self.now, self.left, self.is_in_rows) = (time, (rows, rows), true);
                     match &self.names {
                         None => {
                             line.text.clone_from(&names);
@@ -84,7 +136,7 @@ impl<'t> Dump<'t> {
                         Some(_) => {}
                     }
                 }
-                // bounds of the box, units: of no interest here
+                // bounds of the box: of no interest here
                 _ => {}
             }
         }
@@ -112,7 +164,8 @@ impl<'t> Dump<'t> {
     }
 }
 
-/// Names of columns without the marks of computes, fixes and variables; four components of one compute are a quaternion.
+/// Names of columns without the marks of computes, fixes and variables; four components of one compute are a quaternion, scalar
+/// first but for `orient`, which the documentation of OVITO has scalar last: its order is open.
 pub(crate) fn spelled(columns: &[String]) -> Vec<String> {
     fn part(name: &str) -> Option<(&str, &str)> {
         name.strip_suffix(']')?.rsplit_once('[')
@@ -124,6 +177,7 @@ pub(crate) fn spelled(columns: &[String]) -> Vec<String> {
         stripped.unwrap_or(name).to_string()
     };
     let name = |name: &String| match part(name) {
+        Some(("c_orient", number)) if size("c_orient") == 4 => format!("q_{number}"),
         Some((stem, number)) if size(stem) == 4 => {
             let letters = ["w", "x", "y", "z"];
             let letter = number.parse::<usize>().ok().and_then(|n| letters.get(n.checked_sub(1)?));
@@ -140,9 +194,10 @@ mod tests {
 
     #[test]
     fn four_components_of_a_compute_are_a_quaternion() {
-        let header = "id type c_orient[1] c_orient[2] c_orient[3] c_orient[4] angmomx c_omega[1] v_k";
-        let columns: Vec<String> = header.split_whitespace().map(String::from).collect();
-        let names = spelled(&columns);
-        assert_eq!(names, ["id", "type", "q_w", "q_x", "q_y", "q_z", "angmomx", "omega[1]", "k"]);
+        let header = "id type c_quat[1] c_quat[2] c_quat[3] c_quat[4] angmomx c_omega[1] v_k";
+        let of = |header: &str| spelled(&header.split_whitespace().map(String::from).collect::<Vec<_>>());
+        assert_eq!(of(header), ["id", "type", "q_w", "q_x", "q_y", "q_z", "angmomx", "omega[1]", "k"]);
+        let names = of(&header.replace("c_quat", "c_orient"));
+        assert_eq!(names[2..6], ["q_1", "q_2", "q_3", "q_4"]);
     }
 }

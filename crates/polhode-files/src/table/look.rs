@@ -7,6 +7,7 @@ use super::cells::{Delimiter, is_number, uncommented};
 use super::header::Header;
 use super::lammps::spelled;
 use super::lines::Line;
+use super::name::Name;
 use super::source::Source;
 use crate::error::{Rule, TableError};
 
@@ -82,7 +83,9 @@ pub(crate) fn look(source: &mut Source, reading: &ReadOptions) -> Result<Looked,
                 lines.push(std::mem::take(&mut line));
             }
         }
-        if let Some((header, delimiter)) = headless(&lines[end..], reading) {
+        let named = end > 0 && names_columns(&lines[end - 1].text, &lines[end].text);
+        let is_open = !named || reading.columns != super::ColumnNames::default();
+        if let Some((header, delimiter)) = headless(&lines[end..], reading).filter(|_| is_open) {
             let ahead = ahead_from(&mut lines, end);
             return Ok(Looked { header, named_at: None, delimiter, before: lines, ahead });
         }
@@ -152,6 +155,29 @@ fn headless(lines: &[Line], reading: &ReadOptions) -> Option<(Header, Delimiter)
         _ => return None,
     };
     is_alike.then_some((header, delimiter))
+}
+
+/// Whether the comment above rows without a header names their columns: words as many as cells, of which one is a time, or that
+/// are a name a cell, or three of which name axes. Prose of as many words is none.
+fn names_columns(comment: &str, row: &str) -> bool {
+    let Some(comment) = uncommented(comment) else { return false };
+    let delimiter = Delimiter::of(comment);
+    let words = delimiter.names(comment);
+    let is_prose = |word: &String| {
+        let lower = word.to_lowercase();
+        let is_particle = ["and", "at", "in", "is", "of", "the", "with"].contains(&lower.as_str());
+        word.is_empty() || is_number(word) || is_particle || word.ends_with([':', '.', '!', '?'])
+    };
+    if words.len() != Delimiter::of(row).names(row).len() || words.iter().any(is_prose) {
+        return false;
+    }
+    let names: Vec<Name> = words.iter().map(|word| Name::of(word)).collect();
+    let is_axis = |stem: &str, axis: char| names.iter().any(|name| name.letters == format!("{stem}{axis}"));
+    let mut stems = names.iter().filter_map(|name| name.letters.strip_suffix('x'));
+    let is_listed = matches!(delimiter, Delimiter::Mark(_)) && !words.iter().any(|word| word.contains(' '));
+    is_listed
+        || names.iter().any(|name| name.time_rank().is_some())
+        || stems.any(|stem| is_axis(stem, 'y') && is_axis(stem, 'z'))
 }
 
 /// The line that was meant for a header, and its number: that before the first row, or else the first line with as many cells

@@ -145,10 +145,14 @@ impl<'t> Table<'t> {
         let preamble = Preamble::of(&looked.before);
         let comments =
             looked.before.iter().filter_map(|line| uncommented(&line.text)).map(String::from).collect();
+        let mut header = looked.header;
+        if header.time == Some(0) {
+            header.time_unit = header.time_unit.or(source.time_unit());
+        }
         let mut table = Table {
             source,
             ahead: looked.ahead,
-            header: looked.header,
+            header,
             named_at: looked.named_at,
             comments,
             preamble,
@@ -282,9 +286,11 @@ impl<'t> Table<'t> {
         })
     }
 
-    /// What a number of this column is in its unit.
+    /// What a number of this column is in its unit; one of a dump whose times were brought to s is brought to that too.
     pub(crate) fn scale(&self, place: usize) -> f64 {
-        self.preamble.scale(&self.header.names[place].text)
+        let unit = self.source.time_unit().filter(|unit| self.time_unit == Some(*unit));
+        let per_second = unit.map_or(1.0, |unit| 1.0 / unit.seconds(1.0));
+        self.preamble.scale(&self.header.names[place].text) * per_second
     }
 
     /// The number of the present line.

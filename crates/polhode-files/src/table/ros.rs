@@ -8,7 +8,8 @@ const HEADER: &str = "stamp.secs,stamp.nsecs,orientation.x,orientation.y,orienta
                       angular_velocity.y,angular_velocity.z";
 
 /// Printed messages of the type sensor_msgs/Imu: blocks of `key: value` separated by `---`, the time in the stamp of the
-/// header. Each row stands at the line of its z rate, so that messages name the right line.
+/// header. Each row stands at the line of its z rate, or of its end where that is missing, so that messages name the
+/// right line.
 pub(crate) struct Echo<'t> {
     pub(crate) lines: Lines<'t>,
     is_begun: bool,
@@ -32,6 +33,11 @@ impl<'t> Echo<'t> {
         let mut first = None;
         while self.lines.advance()? {
             let trimmed = self.lines.text.trim();
+            // a message that lacks a part is a row with empty cells
+            if trimmed == "---" && cells.iter().any(|cell| !cell.is_empty()) {
+                (line.number, line.text) = (self.lines.number, cells.join(","));
+                return Ok(true);
+            }
             let (key, value) = trimmed.split_once(':').unwrap_or((trimmed, ""));
             let place = match (key, first) {
                 ("sec" | "secs", _) => 0,

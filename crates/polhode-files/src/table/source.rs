@@ -1,5 +1,7 @@
 //! What rows come from: plain lines, messages of ROS, dumps of LAMMPS.
 
+use polhode::units::TimeUnit;
+
 use super::lammps::Dump;
 use super::lines::{Line, Lines};
 use super::ros::Echo;
@@ -57,6 +59,14 @@ impl<'t> Source<'t> {
 
     pub(crate) fn is_dump(&self) -> bool {
         matches!(self, Self::Dump(_))
+    }
+
+    /// The unit of the times of a dump that names its units.
+    pub(crate) fn time_unit(&self) -> Option<TimeUnit> {
+        match self {
+            Self::Dump(dump) => dump.time_unit(),
+            _ => None,
+        }
     }
 }
 

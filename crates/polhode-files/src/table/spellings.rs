@@ -67,6 +67,9 @@ const RATES: &str = "w omega omegabody gyro gyr gyroscope g angularvelocity angu
 const RATES_OF_LOGS: &str = "rotationrate gyrorotation motionrotationrate gyrorad xyz gyroadc fieldangularvelocity \
     imuangularvelocity imugyro sensorangularvelocity";
 
+/// Axes with what they are of behind them, as in `wx_body`.
+const AXES_OF: &str = "xbody ybody zbody|xspace yspace zspace|xworld yworld zworld";
+
 /// The second is of OpenIMU.
 const RATES_WITHOUT_STEM: &str = "p q r|rollrate pitchrate yawrate|xaxis yaxis zaxis|xgyro ygyro zgyro|xgyr ygyr zgyr|\
     xgyroscope ygyroscope zgyroscope|xrate yrate zrate|xangularvelocity yangularvelocity zangularvelocity";
@@ -91,6 +94,7 @@ pub(crate) const SPELLINGS: &[Spelling] = &[
     spelling(Quantity::Angles, NONE, EULER),
     spelling(Quantity::Rates, RATES, VECTOR),
     yielding(Quantity::Rates, RATES_OF_LOGS, VECTOR),
+    yielding(Quantity::Rates, "w omega", AXES_OF),
     yielding(Quantity::Rates, NONE, RATES_WITHOUT_STEM),
     spelling(Quantity::Momentum, MOMENTA, VECTOR),
     // letters alone are a quaternion, and three of them an angular velocity, where nothing else is

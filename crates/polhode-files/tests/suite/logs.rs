@@ -146,6 +146,12 @@ fn robots() {
         + &message("1727600001", "5000000", ["0.25", "1", "-2"]);
     check("ros2 topic echo", &echoed, 1.0);
     check("rostopic echo", &echoed.replace("nanosec", "nsecs").replace("sec:", "secs:"), 1.0);
+    let lacking = echoed.replacen("angular_velocity:\n  x: 0.5\n  y: -1\n  z: 2\n", "", 1);
+    let refused = record::read(&lacking, "log", &ReadOptions::default()).unwrap_err().to_string();
+    assert!(
+        refused.starts_with("log, line 15, column 7 (angular_velocity.x): a number is missing"),
+        "{refused}"
+    );
 }
 
 #[test]
@@ -318,6 +324,36 @@ fn loggers_of_the_second_review() {
         "time,sigma_BN_1,sigma_BN_2,sigma_BN_3,omega_BN_B_1,omega_BN_B_2,omega_BN_B_3\n0.01,0,0,0,0.5,-1,2\n0.02,0,0,0,0.25,1,-2\n",
         1.0,
     );
+}
+
+#[test]
+fn lines_above_the_rows_tell_the_rate_of_the_gyroscope() {
+    let read_at = |lines: &str| {
+        let text = format!("{lines}\nCounter;Gyr_X;Gyr_Y;Gyr_Z\n7;0,5;-1;2\n8;0,25;1;-2\n");
+        let found = record::read(&text, "log", &ReadOptions::default());
+        found.map(|found| found.read_as.sample_rate.unwrap()).map_err(|error| error.to_string())
+    };
+    for (lines, rate) in [
+        ("// Update Rate: 37,5Hz", 37.5),
+        ("// Update Rate = 37.5 Hz", 37.5),
+        ("Sample rate,100", 100.0),
+        ("// Gyroscope sample rate: 100 Hz\n// Accelerometer sample rate: 50 Hz", 100.0),
+        ("// Mag sample rate=20\n// Gyroscope and accelerometer sample rate: 100 Hz", 100.0),
+        ("// Sample rate: 100 Hz\n// Update rate: 100.0Hz", 100.0),
+    ] {
+        let found = read_at(lines).unwrap_or_else(|error| panic!("{lines}: {error}"));
+        assert!((found - rate).abs() < 1e-9 * rate, "{lines}: {found}");
+    }
+    for lines in [
+        "// Sample rate: 100 Hz\n// Update rate: 50 Hz",
+        "// Magnetometer sample rate=20",
+        "// GPS update rate: 5 Hz",
+        "// Sample rate: 1,000 Hz",
+        "// Sample rate: 100 Hz, decimated by 10",
+    ] {
+        let refused = read_at(lines).unwrap_err();
+        assert!(refused.contains("(Counter): counts samples"), "{lines}: {refused}");
+    }
 }
 
 #[test]

@@ -281,6 +281,27 @@ fn columns_of_text_may_stand_anywhere() {
 }
 
 #[test]
+fn a_comment_that_names_every_column_is_a_header() {
+    for (mark, header) in [
+        (" ", "time ax ay az"),
+        (" ", "elapsed u v w"),
+        (" ", "seconds ax ay az"),
+        (",", "t_ms,gx_mdps,gy_mdps,gz_mdps"),
+        (",", "clock,u,v,w"),
+    ] {
+        let rows = ["0 1 2 3", "1 4 5 6", ""].join("\n").replace(' ', mark);
+        let message = refusal(&format!("# made by hand\n#{header}\n{rows}"));
+        assert_eq!(message, refusal(&format!("# made by hand\n{header}\n{rows}")), "{header}");
+        assert!(message.starts_with("a.csv, line 2: n"), "{message}");
+    }
+    // prose of as many words
+    for prose in ["made by a script", "time and angular velocity", "Start time: at noon", "run 7 of 9"] {
+        let found = only(&format!("# {prose}\n0 1 2 3\n1 4 5 6\n"));
+        assert_eq!(found, (vec![0.0, 1.0], vec![[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]), "{prose}");
+    }
+}
+
+#[test]
 fn any_line_end_is_one_and_messages_stay_short() {
     let expected = only("t,wx,wy,wz\n0,1,2,3\n1,4,5,6\n");
     for end in ["\r", "\r\n", "\r\r\n"] {
@@ -368,8 +389,8 @@ fn rows_of_several_bodies_are_no_record_and_a_counter_is_no_body() {
     let rule = "a, line 4, column 2 (id): '7': rows of '8' lie between rows of this body";
     assert_eq!(bodies, format!("{rule}; name a file of one body"));
     assert!(told([1, 2, 3, 4, 2, 3]).contains("line 6, column 2 (id): '2': rows of '4' lie between"));
-    assert!(
-        !told([1, 2, 3, 4, 5, 6]).contains("of this body")
-            && !told([1, 1, 1, 2, 2, 2]).contains("of this body")
-    );
+    assert!(!told([1, 2, 3, 4, 5, 6]).contains("of this body"));
+    let rule = "a, line 5, column 2 (id): '2': rows of '1' come before rows of this body";
+    let later = told([1, 1, 1, 2, 2, 2]);
+    assert!(later.starts_with(rule) && later.contains("rename the column"), "{later}");
 }

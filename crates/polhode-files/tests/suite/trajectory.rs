@@ -57,6 +57,9 @@ fn dumps_and_ids_part_the_bodies() {
              7 {step} 0 0 1 1 2 3\n3 1 0 0 0 4 5 6\n"
         )
     };
+    // the second row would not be read
+    let error = found(&block(0).replace("ATOMS\n2", "ATOMS\n1"), "").unwrap_err();
+    assert!(error.starts_with(", line 11: one row more than the 1 that the block announces"), "{error}");
     let found = found(&(block(0) + &block(100)), "").unwrap();
     assert!(found.counts_steps);
     assert_eq!(found.bodies[0].0.as_deref(), Some("7"));
@@ -114,7 +117,22 @@ fn dumps_tell_their_time_before_the_step() {
              0 1\n0 1\n0 1\nITEM: ATOMS id c_q[1] c_q[2] c_q[3] c_q[4]\n1 1 0 0 0\n"
         )
     };
-    let found = found(&(block("0", 0) + &block("0.5", 100)), "").unwrap();
+    let text = block("0", 0) + &block("0.5", 100);
+    let moving = text
+        .replace("c_q[4]\n", "c_q[4] omegax omegay omegaz angmomx angmomy angmomz\n")
+        .replace("1 1 0 0 0\n", "1 1 0 0 0 0.25 0 0 0 2 0\n");
+    for (style, unit) in [("lj", 1.0), ("real", 1e-15), ("metal", 1e-12), ("micro", 1e-6), ("si", 1.0)] {
+        let found = found(&moving.replace("\nlj\n", &format!("\n{style}\n")), "").unwrap();
+        let body = &found.bodies[0].1;
+        let near = |value: f64, expected: f64| (value / expected - 1.0).abs() < 1e-12;
+        assert!(near(body.times[1], 0.5 * unit), "{style}: {:?}", body.times);
+        // rates and momenta go with the times
+        assert!(near(body.rates.as_ref().unwrap()[1][0], 0.25 / unit), "{style}: {:?}", body.rates);
+        assert!(near(body.momentum.as_ref().unwrap()[1][1], 2.0 / unit), "{style}: {:?}", body.momentum);
+    }
+    let error = found(&text.replace("\nlj\n", "\nreel\n"), "").unwrap_err();
+    assert!(error.starts_with(", line 2: 'reel': no unit that is known here; known: lj, real"), "{error}");
+    let found = found(&text, "").unwrap();
     assert!(!found.counts_steps);
     assert_eq!(found.bodies[0].1.times, [0.0, 0.5]);
 }
