@@ -231,6 +231,23 @@ pub enum FitError {
         /// Names of the coefficients that were fitted.
         names: Vec<&'static str>,
     },
+    /// A momentum or an energy is to give the size, and differs between the segments.
+    #[error(
+        "{quantity} is to give the size of the tensor, as one that is the same in all segments, but that of segment {} is {factor:.3} times \
+         that of segment {}: fit the throw alone to which it belongs, give the trace or the moment about an axis instead, or leave it out for \
+         the shape alone",
+        largest + 1, smallest + 1
+    )]
+    SizeDiffers {
+        /// The angular momentum or the kinetic energy.
+        quantity: &'static str,
+        /// The largest over the smallest.
+        factor: f64,
+        /// The segment of the largest, from 0.
+        largest: usize,
+        /// The segment of the smallest, from 0.
+        smallest: usize,
+    },
     /// A wheel is to be calibrated from a record that does not tell its speed.
     #[error(
         "no wheel turns in the record: record again with the wheel running; each segment must hold its speed, somewhere not zero"
