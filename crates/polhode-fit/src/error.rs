@@ -256,6 +256,18 @@ pub enum FitError {
     /// A wheel is to be calibrated from a record that has torques.
     #[error("the record has torques: calibrate a wheel from records in which none acts but that of air")]
     WheelWithTorques,
+    /// The moment of a wheel that is to be found would be negative.
+    #[error(
+        "the moment of the wheel would be {value:.3e} +- {sigma:.1e} kg m^2, and it is negative by {:.1} of its deviations: reverse the axis of \
+         the wheel, or the sign of its speed",
+        -*value / *sigma
+    )]
+    WheelSense {
+        /// The moment, kg m².
+        value: f64,
+        /// Its standard deviation, kg m².
+        sigma: f64,
+    },
     /// Segments that hold different quantities.
     #[error(
         "{with} has {what} and {without} has none: give both what their sensors read, zeros where nothing turns or \
