@@ -102,7 +102,7 @@ pub enum FitError {
     /// Errors of the sensor that were to be fitted leave the tensor open, which the record tells without them.
     #[error(
         "the record cannot tell the errors of the sensor that are to be fitted from the tensor: without them the fit has an answer; \
-         let them have smaller deviations, fit fewer of them, or record longer"
+         let them have smaller deviations, fit fewer of them or none, or record longer or faster"
     )]
     UntoldSensor,
     /// Momenta of wheels or torques of the record contradict its rates.
