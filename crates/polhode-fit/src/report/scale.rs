@@ -85,6 +85,9 @@ pub(crate) fn check_same(
         first += segment.len();
     }
     means.retain(|mean| mean.weight.is_finite() && mean.weight > 0.0);
+    if means.len() < 2 {
+        return Ok(());
+    }
     let total: f64 = means.iter().map(|mean| mean.weight).sum();
     let value = means.iter().map(|mean| mean.value * mean.weight).sum::<f64>() / total;
     let slope = means.iter().map(|mean| mean.slope * mean.weight).sum::<Coordinates>() / total;
