@@ -102,7 +102,7 @@ pub enum FitError {
     /// Errors of the sensor that were to be fitted leave the tensor open, which the record tells without them.
     #[error(
         "the record cannot tell the errors of the sensor that are to be fitted from the tensor: without them the fit has an answer; \
-         let them have smaller deviations, fit fewer of them, or record longer"
+         let them have smaller deviations, fit fewer of them or none, or record longer or faster"
     )]
     UntoldSensor,
     /// Momenta of wheels or torques of the record contradict its rates.
@@ -231,6 +231,23 @@ pub enum FitError {
         /// Names of the coefficients that were fitted.
         names: Vec<&'static str>,
     },
+    /// A momentum or an energy is to give the size, and differs between the segments.
+    #[error(
+        "{quantity} is to give the size of the tensor, as one that is the same in all segments, but that of segment {} is {factor:.3} times \
+         that of segment {}: fit the throw alone to which it belongs, give the trace or the moment about an axis instead, or leave it out for \
+         the shape alone",
+        largest + 1, smallest + 1
+    )]
+    SizeDiffers {
+        /// The angular momentum or the kinetic energy.
+        quantity: &'static str,
+        /// The largest over the smallest.
+        factor: f64,
+        /// The segment of the largest, from 0.
+        largest: usize,
+        /// The segment of the smallest, from 0.
+        smallest: usize,
+    },
     /// A wheel is to be calibrated from a record that does not tell its speed.
     #[error(
         "no wheel turns in the record: record again with the wheel running; each segment must hold its speed, somewhere not zero"
@@ -239,6 +256,18 @@ pub enum FitError {
     /// A wheel is to be calibrated from a record that has torques.
     #[error("the record has torques: calibrate a wheel from records in which none acts but that of air")]
     WheelWithTorques,
+    /// The moment of a wheel that is to be found would be negative.
+    #[error(
+        "the moment of the wheel would be {value:.3e} +- {sigma:.1e} kg m^2, and it is negative by {:.1} of its deviations: reverse the axis of \
+         the wheel, or the sign of its speed",
+        -*value / *sigma
+    )]
+    WheelSense {
+        /// The moment, kg m².
+        value: f64,
+        /// Its standard deviation, kg m².
+        sigma: f64,
+    },
     /// Segments that hold different quantities.
     #[error(
         "{with} has {what} and {without} has none: give both what their sensors read, zeros where nothing turns or \

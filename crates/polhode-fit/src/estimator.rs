@@ -118,7 +118,11 @@ pub(crate) fn fitted(record: &Record, settings: &Settings) -> Result<Fitted, Fit
     };
     fitted(record, settings).map_err(|mut error| {
         let exact = SensorPriors::default();
-        if matches!(error, FitError::Unsettled { .. })
+        let is_untold = matches!(
+            error,
+            FitError::Unsettled { .. } | FitError::Unidentifiable(_) | FitError::NoRotation { .. }
+        );
+        if is_untold
             && settings.sensor != exact
             && fitted(record, &settings.clone().with_sensor(exact)).is_ok()
         {

@@ -106,7 +106,7 @@ pub use simulate::{
     Disturbances, Gyroscope, SimulatedPoses, SimulationError, simulate, simulate_poses, simulate_with,
 };
 pub use units::product::UnitProduct;
-pub use wheel::{WheelCalibration, calibrate_wheel};
+pub use wheel::{WheelCalibration, WheelWarning, calibrate_wheel};
 
 /// What the fit decides by, and where that is measured.
 pub mod guide {

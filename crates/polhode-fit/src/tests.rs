@@ -57,6 +57,10 @@ fn refusals_say_their_numbers() {
         unsettled(Some(0.03), Some(1.5)),
         &["12 rounds", "fall by 3.00 per cent", "time 1.5000 times", "0.1000 : 0.4000 : 0.5000"],
     );
+    says(
+        FitError::SizeDiffers { quantity: "the angular momentum", factor: 1.5004, largest: 2, smallest: 0 },
+        &["the angular momentum is to give the size", "segment 3 is 1.500 times that of segment 1"],
+    );
     says(FitError::Undersampled { turn: 6.0, step: 0.1 }, &["6.000e0 rad", "more than 1.910e1 samples"]);
     let clash = Clash { first: Constraint::Triangle, second: Constraint::Drag { name: "drag" }, gap: 0.2 };
     says(FitError::Contradiction(Box::new(clash)), &["half the trace", "drag >= 0", "2.000e-1 of the trace"]);

@@ -176,6 +176,8 @@ thresholds! {
         CALMER: f64 = 0.25, "share of the torque noise that is left with it", UNMEASURED;
         TOLD: f64 = 6.0,
             "deviations from 1 of the factor of a component of that momentum from which on it is wrong: a chance of 2e-9", DERIVED;
+        ALIKE: f64 = 3e-3,
+            "relative difference of the momenta or energies of two segments that may be an error of the sensor", UNMEASURED;
     }
     warnings: "warnings" {
         FAR: f64 = 6.0,

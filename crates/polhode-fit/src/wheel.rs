@@ -1,5 +1,7 @@
 //! The inertia of a wheel from records of a body that is known.
 
+use core::fmt;
+
 use polhode::inertia::Inertia;
 use polhode::record::Record;
 
@@ -12,9 +14,12 @@ use crate::physical::coordinates::coordinates;
 use crate::physical::failure::SolverFailure;
 use crate::report::nuisance::Nuisance;
 use crate::settings::Settings;
-use crate::settings::torque::TorqueModel;
+use crate::settings::torque::{TorqueModel, TorqueNoise};
+use crate::signal::covariance::{Levels, acceleration_density};
 use crate::signal::normalised::{Normalised, normalised};
 use crate::solve::held::held;
+use crate::thresholds::noise::{DEVIATIONS, SURE};
+use crate::thresholds::warnings::RESIDUALS;
 
 /// The moment of inertia of a wheel about its axis, and what it was found from.
 #[non_exhaustive]
@@ -39,6 +44,52 @@ pub struct WheelCalibration {
     pub samples: usize,
     /// Segments that were long enough.
     pub segments: usize,
+    /// What limits the use of the answer.
+    pub warnings: Vec<WheelWarning>,
+}
+
+/// What limits the use of the moment of a wheel. Its `Display` is a sentence.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum WheelWarning {
+    /// The residuals ask for a torque at random.
+    TorqueNoise {
+        /// Largest power spectral density of the angular acceleration among the segments, the mean of the three components, (rad/s²)² s.
+        density: f64,
+    },
+    /// The residuals exceed the noise.
+    Residuals {
+        /// Mean square of the residuals over the noise.
+        misfit: f64,
+    },
+    /// The moment is not beyond the deviations that noise brings.
+    NoWheel {
+        /// The moment, kg m².
+        value: f64,
+        /// Its standard deviation, kg m².
+        sigma: f64,
+    },
+}
+
+impl fmt::Display for WheelWarning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let unexplained =
+            "the known body and a wheel about this axis do not explain the rates: check the body, its axes, the axis of the wheel, and drag";
+        match self {
+            Self::TorqueNoise { density } => write!(
+                f,
+                "{unexplained}; torques at random take the place of what is left, with an angular acceleration of a density of up to \
+                 {density:.1e} (rad/s^2)^2 s"
+            ),
+            Self::Residuals { misfit } => {
+                write!(f, "{unexplained}; the residuals have {misfit:.2} times the mean square of the noise")
+            }
+            Self::NoWheel { value, sigma } => write!(
+                f,
+                "no wheel shows about this axis: its moment is {value:.2e} +- {sigma:.1e} kg m^2; check the axis and the speed of the wheel"
+            ),
+        }
+    }
 }
 
 /// The moment of inertia of a wheel from records of a body of known inertia in which it turns.
@@ -69,7 +120,7 @@ pub struct WheelCalibration {
 /// ```
 ///
 /// # Errors
-/// As of [`fit`](crate::fit); a record without the speed of a wheel, or with torques.
+/// As of [`fit`](crate::fit); a record without the speed of a wheel, or with torques; a moment that would be negative.
 pub fn calibrate_wheel(
     record: &Record,
     inertia: &Inertia,
@@ -91,19 +142,33 @@ pub fn calibrate_wheel(
     }
     columns.extend(sensor_columns(&settings.sensor, rms));
     let trace = inertia.tensor().trace();
-    let x = coordinates(&(inertia.tensor() / trace));
+    let j = inertia.tensor() / trace;
+    let x = coordinates(&j);
     let noise = noise_of(settings, rms, variance);
     let radius = settings.radius.map(|radius| radius * rms);
     let found = held(&stretches, x, &columns, variance, noise, radius)
         .ok_or(FitError::Solver(SolverFailure::Covariance))?;
     let deviation = found.misfit.max(1.0).sqrt();
     let per_unit = trace / scale;
+    let (value, sigma) = (found.values[0] * per_unit, found.sigmas[0] * deviation * per_unit);
+    if value < -SURE * sigma {
+        return Err(FitError::WheelSense { value, sigma });
+    }
+    let level = |(_, levels): &(usize, Levels)| levels.torque * acceleration_density(levels.shape, &j);
+    let density = found.levels.iter().map(level).fold(0.0, f64::max) * variance * rms * rms * rms;
+    let is_fitted = settings.torque_noise == TorqueNoise::Fitted;
+    let most = RESIDUALS.max(1.0 + DEVIATIONS * (2.0 / found.dof.max(1) as f64).sqrt());
+    let warnings = [
+        (is_fitted && density > 0.0).then_some(WheelWarning::TorqueNoise { density }),
+        (found.misfit > most).then_some(WheelWarning::Residuals { misfit: found.misfit }),
+        (value <= SURE * sigma).then_some(WheelWarning::NoWheel { value, sigma }),
+    ];
     let nuisances = (1..columns.len())
         .map(|k| Nuisance::new(&columns[k], found.values[k], found.sigmas[k] * deviation, rms));
     let used = || found.levels.iter().map(|(k, _)| &stretches[*k]);
     Ok(WheelCalibration {
-        inertia: found.values[0] * per_unit,
-        sigma: found.sigmas[0] * deviation * per_unit,
+        inertia: value,
+        sigma,
         nuisances: nuisances.collect(),
         radius: found.radius / rms,
         noise_sigma: variance.sqrt() * rms,
@@ -111,5 +176,6 @@ pub fn calibrate_wheel(
         dof: found.dof,
         samples: used().map(|stretch| stretch.times.len()).sum(),
         segments: used().collect::<Vec<_>>().chunk_by(|a, b| a.segment == b.segment).count(),
+        warnings: warnings.into_iter().flatten().collect(),
     })
 }

@@ -165,6 +165,12 @@ fn prior(text: &str) -> Result<Prior, String> {
 }
 
 impl PriorArguments {
+    /// The flag that was given.
+    pub(super) fn flag(&self) -> Option<&'static str> {
+        let inertia = self.prior_inertia.as_ref().map(|_| "--prior-inertia");
+        inertia.or(self.prior_shape.as_ref().map(|_| "--prior-shape"))
+    }
+
     pub(super) fn prior(&self) -> Option<Prior> {
         let shape = self.prior_shape.clone().map(Prior::shape_only);
         self.prior_inertia.clone().or(shape)

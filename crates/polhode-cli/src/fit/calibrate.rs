@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 use polhode::inertia::Inertia;
-use polhode_files::error::Error;
+use polhode_files::error::{Error, warn};
 use polhode_fit::{FitError, Record, Settings, WheelCalibration, calibrate_wheel};
 use polhode_pages::table::{Column, Format, Table, row};
 use serde_json::{Value, json};
@@ -26,6 +26,8 @@ pub(super) fn report(
             _ => Error::Input(message),
         }
     })?;
+    // the JSON holds them too
+    wheel.warnings.iter().for_each(|warning| warn(&warning.to_string()));
     Ok(match format {
         Format::Table => text(&wheel, axis, as_read),
         Format::Csv => rows(&wheel).csv(),
@@ -78,6 +80,7 @@ fn object(wheel: &WheelCalibration, axis: &Vector3<f64>, (record, as_read): (&Re
         "radius": wheel.radius,
         "chi2_per_dof": wheel.chi2_per_dof,
         "dof": wheel.dof,
+        "warnings": wheel.warnings.iter().map(ToString::to_string).collect::<Value>(),
         "read_as": as_read.json(),
         "unused_columns": super::report::unused(record),
     })

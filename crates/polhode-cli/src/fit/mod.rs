@@ -320,6 +320,16 @@ impl Fit {
             let remedy = "leave out --report, --residuals and --figure, or give --carrier";
             return Err(Error::input("--calibrate-wheel", "", rule, remedy));
         }
+        let unused = [
+            self.prior.flag(),
+            (!self.at_least.is_empty()).then_some("--at-least"),
+            (!self.at_most.is_empty()).then_some("--at-most"),
+            self.trust_units.then_some("--trust-units"),
+        ];
+        if let Some(flag) = unused.into_iter().flatten().next() {
+            let rule = "--calibrate-wheel takes the tensor of --body as it is, and checks no units";
+            return Err(Error::input(flag, "", rule, "leave it out"));
+        }
         if self.known.body()?.is_some() {
             return Ok(());
         }

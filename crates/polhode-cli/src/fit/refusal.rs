@@ -17,6 +17,7 @@ pub(super) fn reason(error: &FitError) -> String {
         FitError::UntoldSensor => format!(
             "{error} (smaller --gyro-bias, --gyro-scale, --gyro-axis-scales, --gyro-misalignment or --gyro-skew)"
         ),
+        FitError::SizeDiffers { .. } => format!("{error} (--window t0,t1; --trace, --moment)"),
         FitError::Undersampled { .. } => format!("{error} (--rate-unit, --time-unit)"),
         _ => error.to_string(),
     }

@@ -78,11 +78,16 @@ fn a_wheel_is_calibrated_by_a_body_that_is_known() {
     let (value, sigma) = (number(&answer, "/wheel_inertia"), number(&answer, "/sigma"));
     assert!((value - 0.01).abs() < 5.0 * sigma && sigma < 2e-4, "{value} +- {sigma}");
     assert_eq!(answer["unused_columns"], serde_json::json!(["temperature"]));
+    assert_eq!(answer["warnings"], serde_json::json!([]));
     let told = run(&format!("{line} --format table"));
     assert!(told.out.starts_with("wheel inertia: (") && told.out.contains(" kg m^2 (95 %)"), "{}", told.out);
     assert_eq!(told.err, "warning: columns not used: temperature\n");
     assert!(run(&format!("{line} --format csv")).out.contains("\nwheel_inertia,0.0"));
 
+    let reversed = run(&format!("fit {record} --calibrate-wheel 0,0,-1 --body {body}"));
+    assert_eq!(reversed.code, 2, "{reversed:?}");
+    assert!(reversed.err.contains("the moment of the wheel would be -"), "{}", reversed.err);
+    assert!(reversed.err.contains("reverse the axis of the wheel"), "{}", reversed.err);
     refused(&format!("fit {record} --calibrate-wheel 0,0,1"), &["--body"]);
     refused(&format!("fit {record} --calibrate-wheel 0,0,0 --body {body}"), &["no direction"]);
     refused(

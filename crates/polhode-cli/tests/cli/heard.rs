@@ -177,6 +177,18 @@ fn what_a_fit_cannot_use_or_write_is_refused() {
         let line = format!("fit {rates} --calibrate-wheel 0,0,1 --body {body} {flag}");
         refused(&line, &["--calibrate-wheel", "no page"]);
     }
+    let flags = [
+        "--prior-inertia 1,2,2.6,0.01",
+        "--prior-shape 1,2,2.6,0.01",
+        "--at-least 0,0,1,0.1",
+        "--at-most 0,0,1,0.45",
+        "--trust-units",
+    ];
+    for flag in flags {
+        let name = flag.split(' ').next().unwrap();
+        let line = format!("fit {rates} --calibrate-wheel 0,0,1 --body {body} {flag}");
+        refused(&line, &[name, "--calibrate-wheel takes the tensor of --body as it is"]);
+    }
 }
 
 #[test]

@@ -130,6 +130,18 @@ pub enum CarrierError {
         /// Angle between the two axes, rad.
         angle: f64,
     },
+    /// The moment of the wheel that is to be found would be negative.
+    #[error(
+        "the moment of the wheel would be {inertia:.3e} +- {sigma:.1e} kg m^2, and it is negative by {:.1} of its deviations: reverse the axis \
+         of the wheel, or the sign of its speed",
+        -*inertia / *sigma
+    )]
+    WheelSense {
+        /// The moment, kg m².
+        inertia: f64,
+        /// Its standard deviation, kg m².
+        sigma: f64,
+    },
     /// With the deviations that the contradiction asks for, the size of the carrier is open.
     #[error(
         "the records contradict each other so much that they leave the size open: chi squared is {chi2:.1} of {dof} degrees of freedom, \

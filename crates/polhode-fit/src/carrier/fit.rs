@@ -4,7 +4,7 @@ use nalgebra::{DVector, Matrix3};
 
 use crate::carrier::agreement::contradicts;
 use crate::carrier::error::CarrierError;
-use crate::carrier::estimate::CarrierEstimate;
+use crate::carrier::estimate::{CarrierEstimate, MeasuredWheel};
 use crate::carrier::law::{bodies, is_held, is_physical};
 use crate::carrier::least::least;
 use crate::carrier::records::CarrierRecords;
@@ -53,7 +53,7 @@ use crate::thresholds::noise::SURE;
 ///
 /// # Errors
 /// A record that cannot be fitted; nothing that gives a size, as a proof body too light for the records; wheels of only some of the
-/// records, or of different axes; records that contradict each other so much that they leave the size open.
+/// records, of different axes, or with a negative moment; records that contradict each other so much that they leave the size open.
 pub fn fit_carrier(records: &CarrierRecords, settings: &Settings) -> Result<CarrierEstimate, CarrierError> {
     let beforehand = [
         ("known quantity", settings.known.is_some()),
@@ -115,6 +115,11 @@ pub fn fit_carrier(records: &CarrierRecords, settings: &Settings) -> Result<Carr
         let Agreement { chi2, dof } = agreement;
         return Err(CarrierError::Contradicted { chi2, dof, trace, sigma });
     }
+    let wheel = report.wheel();
+    let negative = wheel.filter(|wheel| wheel.inertia < -SURE * wheel.sigma);
+    if let Some(MeasuredWheel { inertia, sigma }) = negative {
+        return Err(CarrierError::WheelSense { inertia, sigma });
+    }
     let object = system.object.map(|placed| report.body(placed, Matrix3::zeros()));
     let itself = system.object.zip(records.object_term);
     let held = ["carrier", "object"].into_iter().zip(&terms).filter(|(_, body)| is_held(body, &answer));
@@ -124,7 +129,7 @@ pub fn fit_carrier(records: &CarrierRecords, settings: &Settings) -> Result<Carr
         carrier,
         object,
         object_itself: itself.map(|(placed, term)| report.body(placed, -term)),
-        wheel: report.wheel(),
+        wheel,
         covariance: report.joint(),
         nuisances: report.nuisances(&sensor),
         sizes: start.sizes,

@@ -29,7 +29,7 @@ use crate::report::identifiability::Identifiability;
 use crate::report::mirror::{mirror_sigmas, mirrored};
 use crate::report::model::models;
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, WithoutSegment};
-use crate::report::scale::{Noise, by_prior, check_constant, scale_of};
+use crate::report::scale::{Noise, by_prior, check_constant, check_same, scale_of};
 use crate::report::torque_free::{InvariantTrend, Whiteness};
 use crate::report::warnings::{Doubts, of_likelihood};
 use crate::settings::Settings;
@@ -103,10 +103,11 @@ pub(crate) fn report(
     let (sigma_principal, sigma_axes) = sigmas(&on_face, &v, &moments);
     let ratios = ratios(&on_face, &v, &moments);
     let has_attitudes = free.followed.tracks.iter().any(Track::has_attitudes);
-    let rate = if has_attitudes { 0.0 } else { information.levels.rate };
+    let Levels { attitude, rate } = information.levels;
+    let (attitude, rate) = if has_attitudes { (attitude, 0.0) } else { (0.0, rate) };
     let (inertia, inertia_covariance) = absolute(
         settings,
-        (&rates, rate * rate),
+        (&rates, rate * rate, Some(attitude)),
         free.read.unit,
         model_of(free.torque),
         &shape.tensor(),
@@ -288,20 +289,23 @@ pub(super) fn identify(stretches: &[Stretch], x: &Coordinates, information: &For
 /// The rates of the motion at the samples, axes of the tensor, in units of the fit.
 fn fitted_rates(free: &Free) -> Vec<Stretch> {
     let model = &free.followed.model;
-    let each = free.followed.tracks.iter().zip(&model.starts).map(|(track, start)| {
+    let tracks = free.followed.tracks.iter().zip(&model.starts).zip(&free.read.used);
+    let each = tracks.map(|((track, start), &(segment, _))| {
         let motion = model.motion(start);
         let rate =
             |t: &f64| motion.as_ref().and_then(|motion| motion.at(*t)).map_or(Vector3::zeros(), |m| m.rate);
-        Stretch::new(track.times.clone(), track.times.iter().map(rate).collect())
+        let rates = track.times.iter().map(rate).collect();
+        Stretch { segment, ..Stretch::new(track.times.clone(), rates) }
     });
     each.collect()
 }
 
 /// The absolute tensor by the rates of a fitted motion, where something gives its size, and its covariance; `torque` was fitted, and
-/// readings of the rates had a component of the noise with that `variance`, in units of the fit.
+/// readings of the rates had a component of the noise with that `variance`, in units of the fit. The motion of each segment was told by attitudes
+/// with a noise of the deviation `attitude`; `None` of motions that torques at random change.
 pub(super) fn absolute(
     settings: &Settings,
-    (rates, variance): (&[Stretch], f64),
+    (rates, variance, attitude): (&[Stretch], f64, Option<f64>),
     unit: f64,
     torque: TorqueModel,
     j: &Matrix3<f64>,
@@ -313,6 +317,15 @@ pub(super) fn absolute(
         return prior.map_or(Ok((None, None)), |prior| by_prior(j, &prior, covariance, x));
     };
     check_constant(known, &torque_columns(torque))?;
+    if let Some(attitude) = attitude {
+        let of_segment = |segment: &[Stretch], _: usize| {
+            // as much as a straight line through the turns leaves open of its slope
+            let slope = attitude / segment.iter().map(Stretch::duration).sum::<f64>();
+            let variance = variance + 12.0 * slope * slope;
+            scale_of(known, segment, unit, j, Noise { variance, is_in_rates: false })
+        };
+        check_same(known, rates, covariance, 1.0, of_segment)?;
+    }
     let scale = scale_of(known, rates, unit, j, Noise { variance, is_in_rates: false });
     let (inertia, covariance) = scale.sized(known, prior.as_ref(), j, covariance, 1.0, None)?;
     Ok((Some(inertia), Some(covariance)))

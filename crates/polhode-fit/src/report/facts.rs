@@ -1,6 +1,6 @@
 //! The report, drawn from the record, its weak estimate and the nearest physical tensor.
 
-use crate::report::scale::{Noise, by_prior, check_constant, scale_of};
+use crate::report::scale::{Noise, by_prior, check_constant, check_same, scale_of};
 use nalgebra::{DMatrix, Matrix3, SMatrix};
 use polhode::inertia::Inertia;
 use polhode::record::{Record, Spike};
@@ -171,10 +171,15 @@ impl Facts<'_> {
         Ok(estimate)
     }
 
+    /// Levels of the noise of a stretch.
+    fn levels(&self, stretch: usize) -> Levels {
+        let part = self.chosen.weak.parts.iter().find(|part| part.stretch == stretch);
+        part.map_or(Levels::WHITE, |part| part.levels)
+    }
+
     /// Density of the torque noise of a stretch.
     fn torque_noise(&self, stretch: usize, j: &Matrix3<f64>) -> Matrix3<f64> {
-        let part = self.chosen.weak.parts.iter().find(|part| part.stretch == stretch);
-        let levels = part.map_or(Levels::WHITE, |part| part.levels);
+        let levels = self.levels(stretch);
         torque_shape(levels.shape, j) * (levels.torque * self.variance)
     }
 
@@ -234,10 +239,16 @@ impl Facts<'_> {
             return prior.map_or(Ok((None, None)), |prior| by_prior(j, &prior, covariance, &at.x));
         };
         check_constant(known, &self.chosen.weak.columns)?;
-        let noise = Noise { variance: self.variance, is_in_rates: true };
-        let scale = scale_of(known, self.stretches, self.rms, j, noise);
-        let scale = scale.walking(self.stretches, self.rms, |stretch| self.torque_noise(stretch, j));
+        let scale = |stretches: &[Stretch], first: usize, variance: f64| {
+            let scale = scale_of(known, stretches, self.rms, j, Noise { variance, is_in_rates: true });
+            scale.walking(stretches, self.rms, |k| self.torque_noise(first + k, j))
+        };
         let excess = self.excess();
+        let of_segment = |segment: &[Stretch], first: usize| {
+            scale(segment, first, self.levels(first).white * self.variance)
+        };
+        check_same(known, self.stretches, covariance, excess, of_segment)?;
+        let scale = scale(self.stretches, 0, self.variance);
         let (inertia, covariance) = scale.sized(known, prior.as_ref(), j, covariance, excess, motions)?;
         Ok((Some(inertia), Some(covariance)))
     }

@@ -3,7 +3,9 @@
 use crate::error::FitError;
 use crate::physical::failure::SolverFailure;
 use crate::physical::prior::Told;
+use crate::report::parts::quantile;
 use crate::settings::known::Known;
+use crate::thresholds::judgement::ALIKE;
 use crate::thresholds::noise::SURE;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 use polhode::inertia::Inertia;
@@ -11,7 +13,7 @@ use polhode::inertia::Inertia;
 use crate::bound::motions::Motions;
 use crate::columns::column::Column;
 use crate::columns::effect::Class;
-use crate::physical::coordinates::{Coordinates, ENTRIES, Form, basis, entries_of_coordinates, pair};
+use crate::physical::coordinates::{Coordinates, ENTRIES, Form, basis, eigen, entries_of_coordinates, pair};
 use crate::signal::stretch::Stretch;
 
 /// Variance of a component of the noise of rates, in units of their root mean square.
@@ -23,16 +25,21 @@ pub(crate) struct Noise {
     pub(crate) is_in_rates: bool,
 }
 
+/// What a free motion keeps, where that gives the size.
+fn kept(known: Known) -> Option<&'static str> {
+    match known {
+        Known::Momentum(_) => Some("the angular momentum"),
+        Known::TwiceEnergy(_) => Some("the kinetic energy"),
+        Known::Moment { .. } | Known::Trace(_) => None,
+    }
+}
+
 /// Refuses a size by a momentum or an energy that is not constant, or whose mean cannot be read: `columns` were fitted.
 ///
 /// # Errors
 /// With the names of those that act on the body or on the readings.
 pub(crate) fn check_constant(known: Known, columns: &[Column]) -> Result<(), FitError> {
-    let quantity = match known {
-        Known::Momentum(_) => "the angular momentum",
-        Known::TwiceEnergy(_) => "the kinetic energy",
-        Known::Moment { .. } | Known::Trace(_) => return Ok(()),
-    };
+    let Some(quantity) = kept(known) else { return Ok(()) };
     let mut names: Vec<&'static str> = columns
         .iter()
         .filter(|column| column.class() != Class::Input)
@@ -40,6 +47,74 @@ pub(crate) fn check_constant(known: Known, columns: &[Column]) -> Result<(), Fit
         .collect();
     names.dedup();
     if names.is_empty() { Ok(()) } else { Err(FitError::SizeVaries { quantity, names }) }
+}
+
+/// The mean of ω·M ω over one segment.
+struct OfSegment {
+    segment: usize,
+    value: f64,
+    slope: Coordinates,
+    /// One over its variance at a given shape.
+    weight: f64,
+}
+
+/// Refuses a size by a momentum or an energy that differs between segments by more than chance brings. `scale` is that by the stretches of one
+/// segment, from the place of the first of them. `covariance` is that of the coordinates of the shape, and `excess` as in [`Scale::covariance`].
+///
+/// # Errors
+/// With the two segments that differ most.
+pub(crate) fn check_same(
+    known: Known,
+    stretches: &[Stretch],
+    covariance: &Form,
+    excess: f64,
+    scale: impl Fn(&[Stretch], usize) -> Scale,
+) -> Result<(), FitError> {
+    let Some(quantity) = kept(known) else { return Ok(()) };
+    let (mut first, mut means) = (0, Vec::new());
+    for segment in stretches.chunk_by(|a, b| a.segment == b.segment) {
+        if let Some((mean, _)) = scale(segment, first).mean {
+            let weight = 1.0 / (mean.variance * excess + mean.walk + mean.bias * mean.bias);
+            means.push(OfSegment {
+                segment: segment[0].segment,
+                value: mean.value,
+                slope: mean.slope,
+                weight,
+            });
+        }
+        first += segment.len();
+    }
+    means.retain(|mean| mean.weight.is_finite() && mean.weight > 0.0);
+    if means.len() < 2 {
+        return Ok(());
+    }
+    let total: f64 = means.iter().map(|mean| mean.weight).sum();
+    let value = means.iter().map(|mean| mean.value * mean.weight).sum::<f64>() / total;
+    let slope = means.iter().map(|mean| mean.slope * mean.weight).sum::<Coordinates>() / total;
+    let (values, directions) = eigen(*covariance);
+    let deviations = Form::from_fn(|i, k| directions[(i, k)] * values[k].max(0.0).sqrt());
+    let (mut information, mut right, mut chi2) = (Form::identity(), Coordinates::zeros(), 0.0);
+    for mean in &means {
+        let by_shape = deviations.tr_mul(&(mean.slope - slope));
+        let apart = mean.value - value;
+        information += by_shape * by_shape.transpose() * mean.weight;
+        right += by_shape * (apart * mean.weight);
+        chi2 += apart * apart * mean.weight;
+    }
+    // a shape within its deviations explains as much; shape and means share noise: (a + b)(a + b)ᵀ <= 2 (a aᵀ + b bᵀ)
+    let explained = information.cholesky().map_or(0.0, |factor| right.dot(&factor.solve(&right)));
+    let chi2 = 0.5 * (chi2 - explained);
+    let apart = |mean: &OfSegment| (mean.value - value) * mean.weight.sqrt();
+    means.sort_by(|a, b| apart(a).total_cmp(&apart(b)));
+    if let [least, .., most] = means.as_slice() {
+        let ratio = most.value / least.value.max(1.0 / least.weight.sqrt());
+        let factor = if matches!(known, Known::Momentum(_)) { ratio.sqrt() } else { ratio };
+        if chi2 > quantile((means.len() - 1) as f64, SURE) && factor > 1.0 + ALIKE {
+            let (largest, smallest) = (most.segment, least.segment);
+            return Err(FitError::SizeDiffers { quantity, factor, largest, smallest });
+        }
+    }
+    Ok(())
 }
 
 /// The trace that a known quantity gives to a tensor of shape `j` from rates in units of their root mean square `rms`, rad/s.
@@ -82,6 +157,8 @@ struct Mean {
     /// Of the mean at a given shape.
     variance: f64,
     samples: f64,
+    /// What was taken off it for the noise of the readings.
+    bias: f64,
     /// J⁻¹ M.
     lever: Matrix3<f64>,
     /// Variance of what torque noise makes of the mean from its value at the start.
@@ -109,7 +186,7 @@ impl Mean {
         let of_one = 4.0 * scatter.dot(&(m * m)).max(0.0) + 2.0 * variance * m.norm_squared();
         let slope = Coordinates::from_fn(|k, _| scatter.dot(&change(k)));
         let (value, variance) = (scatter.dot(&m), variance * of_one / samples);
-        Mean { m, value, slope, variance, samples, lever, walk: 0.0 }
+        Mean { m, value, slope, variance, samples, bias: bias * m.trace(), lever, walk: 0.0 }
     }
 
     /// The scale from a trace that goes with the inverse `power` of the mean.

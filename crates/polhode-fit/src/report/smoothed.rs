@@ -83,7 +83,7 @@ pub(crate) fn report(
     let ratios = ratios(&on_face, &v, &moments);
     let (j, both) = (shape.tensor(), on_face * on_face.transpose());
     let (inertia, inertia_covariance) =
-        absolute(settings, (&rates, 0.0), read.unit, chosen.model, &j, &both, &answer.x)?;
+        absolute(settings, (&rates, 0.0, None), read.unit, chosen.model, &j, &both, &answer.x)?;
     let residuals: Vec<Residuals> = found
         .whitened
         .iter()

@@ -526,6 +526,14 @@ fn what_gives_no_size_is_refused() {
     assert!(
         matches!(error, CarrierError::WheelAxis { attached: Proof, angle } if (angle - 0.8).abs() < 1e-12)
     );
+    // speeds of the wrong sign
+    let reversed = Bench { tumblings: turning.tumblings[..2].to_vec(), ..turning.clone() };
+    let reversed = reversed.records(-1.0, &mut Random::new(107)).with_unknown_wheel();
+    let error = fit_carrier(&reversed, &settings.clone().with_torque(TorqueModel::None)).unwrap_err();
+    assert!(
+        matches!(error, CarrierError::WheelSense { inertia, sigma } if inertia < -5.0 * sigma),
+        "{error}"
+    );
     // no wheel where one is to be found
     let error = fit_carrier(&alone.clone().with_unknown_wheel(), &settings).unwrap_err();
     assert_eq!(error, CarrierError::Record { attached: Nothing, error: Box::new(FitError::NoWheelSpeed) });

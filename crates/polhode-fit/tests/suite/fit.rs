@@ -328,6 +328,40 @@ fn a_size_by_what_varies_is_refused() {
     assert!(fit(&record, &settings).unwrap().inertia.is_some());
 }
 
+/// One momentum or energy gives the size of tosses that have the same, and is refused for tosses that differ in it.
+#[test]
+fn a_size_by_what_differs_between_segments_is_refused() {
+    let (j, times, rates) = example(1e-3);
+    let (one, other) = (Vector3::new(0.3, -0.8, 0.6), Vector3::new(-0.5, 0.4, 0.9));
+    let momentum = (j * one).norm();
+    let equal = other * (momentum / (j * other).norm());
+    let mut random = Random::new(31);
+    let mut joined = |omega: Vector3<f64>| {
+        let first = Record::from_samples(&times, &rates).unwrap();
+        first.join(record(&j, omega, &times, 1e-3, &mut random))
+    };
+    let settings = Settings::default().with_known(Known::Momentum(momentum));
+    let estimate = fit(&joined(equal), &settings).unwrap();
+    let sigma = estimate.inertia_covariance.unwrap().fixed_view::<3, 3>(0, 0).sum().sqrt();
+    let off = estimate.inertia.unwrap().tensor().trace() - j.trace();
+    assert!(off.abs() < 4.0 * sigma && sigma < 0.01, "{off} {sigma}");
+
+    let faster = equal * 1.5;
+    let energy = |omega: Vector3<f64>| omega.dot(&(j * omega));
+    let apart = joined(faster);
+    for (known, expected) in [
+        (Known::Momentum(momentum), 1.5),
+        (Known::TwiceEnergy(energy(one)), energy(faster) / energy(one)),
+    ] {
+        match fit(&apart, &Settings::default().with_known(known)) {
+            Err(FitError::SizeDiffers { factor, largest: 1, smallest: 0, .. }) => {
+                assert!((factor / expected - 1.0).abs() < 0.01, "{known:?}: {factor} {expected}");
+            }
+            other => panic!("{known:?}: {:?}", other.map(|estimate| estimate.principal)),
+        }
+    }
+}
+
 /// Few samples a period: the fit follows the exact motion, and the size carries the noise of the readings all the same.
 #[test]
 fn a_size_from_sparse_readings_scatters_as_it_claims() {

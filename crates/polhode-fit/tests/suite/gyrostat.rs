@@ -118,7 +118,8 @@ fn trials(
                 offset.map_or_else(SensorPriors::default, |s| SensorPriors::default().with_offset(s));
             let e = match fit(&record, &plain().with_sensor(sensor)) {
                 Ok(e) if e.inertia.is_some() => e,
-                Ok(_) | Err(FitError::Unidentifiable(_) | FitError::Unsettled { .. }) => {
+                Ok(_)
+                | Err(FitError::Unidentifiable(_) | FitError::Unsettled { .. } | FitError::UntoldSensor) => {
                     refused += 1;
                     continue;
                 }

@@ -340,13 +340,27 @@ fn several_segments_share_the_tensor_and_the_noise_may_be_given() {
     let given = fit_poses(&all, &Settings::default().with_attitude_noise(1e-2)).unwrap();
     assert!((given.sigma_principal[0] / estimate.sigma_principal[0] - 2.0).abs() < 0.1);
     assert!((given.chi2_per_dof - 0.25).abs() < 0.03, "{}", given.chi2_per_dof);
-    // a known size
-    let sized = fit_poses(&all, &Settings::default().with_known(Known::Momentum(2.0))).unwrap();
-    let inertia = sized.inertia.unwrap();
-    let starts: f64 =
-        tosses.iter().map(|t| t.body.momentum(t.motion.omega_at(0.0).unwrap()).norm_squared()).sum();
-    let trace = 2.0 / (starts / 3.0_f64).sqrt();
-    assert!((inertia.tensor().trace() / trace - 1.0).abs() < 1e-2, "{} {trace}", inertia.tensor().trace());
+    // a momentum that they do not share gives no size
+    let known = Settings::default().with_known(Known::Momentum(2.0));
+    let momentum = |t: &Toss| t.body.momentum(t.motion.omega_at(0.0).unwrap()).norm();
+    let momenta: Vec<f64> = tosses.iter().map(momentum).collect();
+    match fit_poses(&all, &known) {
+        Err(FitError::SizeDiffers { factor, largest, smallest, .. }) => {
+            let expected = momenta[largest] / momenta[smallest];
+            assert!((factor / expected - 1.0).abs() < 0.02, "{factor} {expected}");
+        }
+        other => panic!("{:?}", other.map(|estimate| estimate.principal)),
+    }
+    // one that they share does
+    let share = |(k, toss): (usize, &Toss)| {
+        let omega = toss.motion.omega_at(0.0).unwrap() * (1.6 / momenta[k]);
+        let motion = FreeMotion::from_omega(&toss.body, UnitQuaternion::identity(), omega).unwrap();
+        let measured = attitudes(&motion, &toss.times, 5e-3, &mut Random::new(95 + k as u64));
+        Poses::new("toss", &toss.times, &measured).unwrap()
+    };
+    let shared = tosses.iter().enumerate().map(share).reduce(Poses::join).unwrap();
+    let trace = fit_poses(&shared, &known).unwrap().inertia.unwrap().tensor().trace();
+    assert!((trace / (2.0 / 1.6) - 1.0).abs() < 1e-2, "{trace}");
 }
 
 /// Torques of a body that also has a free motion: what the fit makes of each.

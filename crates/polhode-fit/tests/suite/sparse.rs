@@ -2,7 +2,10 @@
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::{inertia::Inertia, num::Random};
-use polhode_fit::{Disturbances, Gyroscope, Method, Record, Settings, Warning, fit, simulate, simulate_with};
+use polhode_fit::{
+    Disturbances, FitError, Gyroscope, Method, Record, SensorPriors, Settings, Warning, fit, simulate,
+    simulate_with,
+};
 
 /// Half a sample a second of a body that turns by two radians in between, as of a satellite's beacon: the likelihood on the exact motion.
 #[test]
@@ -87,4 +90,30 @@ fn a_step_that_is_given_is_noise_of_sparse_rates() {
             assert!(told.sigma_principal[k] > 2.0 * plain.sigma_principal[k]);
         }
     }
+}
+
+/// Errors of the sensor are fitted in the weak form alone: where only the likelihood on the exact motion has an answer, they are what is not told.
+#[test]
+fn errors_of_the_sensor_are_what_sparse_rates_do_not_tell() {
+    let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+    let times: Vec<f64> = (0..77).map(|i| 2.6 * f64::from(i)).collect();
+    let settings = Settings::default().with_sensor(SensorPriors::default().with_offset(0.02));
+    let mut named = 0;
+    for seed in 0..3 {
+        let mut random = Random::new(seed);
+        let rates = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 3e-3, &mut random).unwrap();
+        let record = Record::from_samples(&times, &rates).unwrap();
+        if fit(&record, &Settings::default()).is_err() {
+            continue;
+        }
+        match fit(&record, &settings) {
+            Ok(_) => {}
+            Err(FitError::UntoldSensor) => named += 1,
+            Err(other) => {
+                let is_of_motion = matches!(other, FitError::Unidentifiable(_) | FitError::NoRotation { .. });
+                assert!(!is_of_motion, "seed {seed}: {other}");
+            }
+        }
+    }
+    assert!(named > 0);
 }

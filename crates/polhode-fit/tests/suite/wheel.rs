@@ -5,8 +5,8 @@ use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_files::record::{self, ReadOptions};
 use polhode_fit::{
-    Disturbances, FitError, Gyroscope, Record, Segment, SensorPriors, Settings, TorqueModel, calibrate_wheel,
-    fit, simulate_with,
+    Disturbances, FitError, Gyroscope, Record, Segment, SensorPriors, Settings, TorqueModel, WheelWarning,
+    calibrate_wheel, fit, simulate_with,
 };
 
 use crate::measured::{random_rotation, sampled, turned};
@@ -87,6 +87,44 @@ fn spikes_are_left_out_of_a_calibration() {
     let kept = Settings::default().with_leave_out_spikes(false);
     let with = calibrate_wheel(&record, &body, &kept);
     assert!(with.is_err() || with.is_ok_and(|with| with.samples == 1001 && with.sigma > 5.0 * without.sigma));
+}
+
+/// Speeds of the wrong sign, torques that are not those of body and wheel, and a wheel that does not act.
+#[test]
+fn what_contradicts_a_calibration_is_said() {
+    let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+    let quiet = Gyroscope::default().with_noise(1e-3);
+    let record = |acting: &Disturbances| spun(&body, acting, &quiet, 20, &mut Random::new(84));
+    let calibrated = |record: &Record| calibrate_wheel(record, &body, &Settings::default());
+    let with_speeds = |speed: f64, rates: &[Vector3<f64>]| {
+        let times = sampled(50, 20);
+        let speeds = times.iter().map(|t| Vector3::new(0.6, 0.0, 0.8) * (speed * (5.0 + 0.5 * t))).collect();
+        let mut record = Record::default();
+        let segment = Segment::new("proof", times, rates.to_vec()).unwrap();
+        record.segments.push(segment.with_wheel(speeds).unwrap());
+        record
+    };
+    let plain = record(&Disturbances::default());
+    let right = calibrated(&plain).unwrap();
+    assert!(right.warnings.is_empty(), "{:?}", right.warnings);
+
+    let reversed = calibrated(&with_speeds(-1.0, plain.segments[0].rates())).unwrap_err();
+    let FitError::WheelSense { value, sigma } = reversed else { panic!("{reversed}") };
+    assert!((value + WHEEL).abs() < 5.0 * sigma && value < -5.0 * sigma, "{value} {sigma}");
+    assert!(reversed.to_string().contains("reverse the axis of the wheel"), "{reversed}");
+
+    let turbulent = calibrated(&record(&Disturbances::default().with_torque_noise(3e-3))).unwrap();
+    let said =
+        |warning: &WheelWarning| matches!(warning, WheelWarning::TorqueNoise { density } if *density > 0.0);
+    assert!(turbulent.warnings.iter().any(said), "{:?}", turbulent.warnings);
+    let text = turbulent.warnings[0].to_string();
+    assert!(text.contains("check the body, its axes, the axis of the wheel"), "{text}");
+
+    let omega = Vector3::new(0.3, 1.0, 0.4);
+    let free = Disturbances::default();
+    let rates = simulate_with(&body, omega, &sampled(50, 20), &free, &quiet, &mut Random::new(85)).unwrap();
+    let none = calibrated(&with_speeds(1.0, &rates)).unwrap();
+    assert!(matches!(none.warnings[..], [WheelWarning::NoWheel { .. }]), "{:?}", none.warnings);
 }
 
 #[test]
