@@ -5,6 +5,8 @@ use std::path::Path;
 use clap::{Args, ValueEnum};
 use polhode::record::{Segment, Spike};
 use polhode::strapdown::{Kind, StrapdownError};
+use polhode::units::RateUnit;
+use polhode_files::NamedBy;
 use polhode_files::error::{Error, tell, warn};
 use polhode_files::record::{Part, Parts};
 use polhode_files::text::{rounded, short};
@@ -100,6 +102,9 @@ impl KindArguments {
                 return Err(Error::input("--kind", "", &rule, remedy));
             }
         };
+        if kind == Kind::Increment {
+            check_unit(&parts)?;
+        }
         let is_unit_open = parts.rate_unit().is_none() && !parts.are_increments();
         let parts = if whole { parts.whole() } else { parts };
         // an increment that stands out is none that may be left out, as its turn would be lost
@@ -114,6 +119,25 @@ impl KindArguments {
             last: None,
             found: Found::default(),
         })
+    }
+}
+
+/// Refuses a unit of rates for increments, which are angles; rad/s and deg/s of a flag stand for rad and deg.
+fn check_unit(parts: &Parts) -> Result<(), Error> {
+    let Some((unit, by)) = parts.read_as().rates.filter(|_| !parts.are_increments()) else { return Ok(()) };
+    match by {
+        NamedBy::Header | NamedBy::Layout => {
+            let name = parts.name();
+            let rule = format!("the unit of the columns of {name} is {unit} ({by}), that of a rate");
+            let remedy = "give --kind rate or average, or name a unit of angles, rad or deg, in the header";
+            Err(Error::input("--kind", Kind::Increment.name(), &rule, remedy))
+        }
+        NamedBy::Setting if unit == RateUnit::RevolutionsPerMinute => {
+            let rule = "increments are angles, and this is the unit of a rate";
+            let remedy = "convert them to rad, or to deg and give --rate-unit deg/s";
+            Err(Error::input("--rate-unit", &unit.to_string(), rule, remedy))
+        }
+        _ => Ok(()),
     }
 }
 

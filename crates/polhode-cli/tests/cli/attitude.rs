@@ -120,6 +120,16 @@ fn the_kind_is_told_by_the_unit_or_asked_for() {
     let angles = rows("t (s),wx (rad),wy (rad),wz (rad)");
     assert!((angle(&answer(&angles, "")) - 49.0 * size).abs() < 1e-12);
     refused_with(&["attitude", &angles, "--kind", "rate"], &["--kind", "unit", "angle", "increment"]);
+    refused_with(
+        &["attitude", &rates, "--kind", "increment"],
+        &["--kind: 'increment'", "rad/s (header), that of a rate", "rad or deg"],
+    );
+    refused_with(
+        &["attitude", &silent, "--kind", "increment", "--rate-unit", "rpm"],
+        &["--rate-unit: 'rpm'", "increments are angles"],
+    );
+    let degrees = answer(&silent, "--kind increment --rate-unit deg/s");
+    assert!((angle(&degrees) - (49.0 * size).to_radians()).abs() < 1e-12);
     // a fit needs rates
     refused_with(&["fit", &angles], &["column 2 (wx (rad))", "rad/s, deg/s, rpm"]);
 }
