@@ -222,6 +222,7 @@ impl Readings {
             ..
         } = self.found;
         tell_skipped(self.parts.skipped(), samples);
+        self.tell_times();
         if self.is_unit_open {
             let (read, other) = match self.kind {
                 Kind::Increment => ("rad", "name the unit of an angle in the header"),
@@ -253,6 +254,21 @@ impl Readings {
             warn(&format!(
                 "{saturated} samples at the end of the sensor's range are left out, at an end of the record"
             ));
+        }
+    }
+
+    /// The unit of the times; where it is guessed from large numbers, a warning.
+    fn tell_times(&self) {
+        let mut read_as = self.parts.read_as();
+        read_as.rates = None;
+        let (name, units) = (self.name(), read_as.units());
+        let (times, by) = &read_as.times;
+        if *by == NamedBy::Values && times.ends_with("since 1970") {
+            warn(&format!(
+                "{name}: {units}; if they count from another time, as from the start of the device, give their unit by --time-unit"
+            ));
+        } else {
+            tell("note", &format!("{name}: {units}"));
         }
     }
 
