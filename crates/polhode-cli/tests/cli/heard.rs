@@ -208,6 +208,19 @@ fn what_other_commands_cannot_use_is_refused_or_said() {
 }
 
 #[test]
+fn of_two_attitudes_none_is_taken_for_the_one_that_is_meant() {
+    let scratch = Scratch::new("heard-second");
+    let both = |row: &[f64]| [row, &row[1..]].concat();
+    let header = "t,q_w,q_x,q_y,q_z,box2_qw,box2_qx,box2_qy,box2_qz";
+    let file = made(&scratch, "second.csv", "t,q", header, both);
+    let rates = written(&scratch, "rates.csv", "t,omega", "t,wx (rad/s),wy (rad/s),wz (rad/s)");
+    let says = "the columns box2_qw, box2_qx, box2_qy, box2_qz hold another attitude";
+    refused(&format!("attitude {rates} --against {file}"), &["--against", "second.csv", says]);
+    refused(&format!("propagate {BODY} --through {file} --every 0.5"), &["--through", "second.csv", says]);
+    refused(&format!("audit {file} {BODY}"), &["second.csv", says]);
+}
+
+#[test]
 fn a_second_time_that_contradicts_the_first_is_named() {
     let scratch = Scratch::new("heard-time");
     let header = "t,time_ms,q_w,q_x,q_y,q_z,omega_body_x,omega_body_y,omega_body_z";
