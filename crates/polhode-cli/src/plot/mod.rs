@@ -176,6 +176,7 @@ pub(crate) fn write(file: Output, picture: Picture, page: &Canvas) -> Result<(),
 
 impl Plot {
     pub(crate) fn run(&self) -> Result<(), Error> {
+        self.motion.start.check_angles(false, self.kind == Kind::Angles)?;
         let known: &[Picture] = match self.kind {
             Kind::Poinsot => &[Picture::Svg, Picture::Png, Picture::Html],
             _ => &[Picture::Svg, Picture::Png],
