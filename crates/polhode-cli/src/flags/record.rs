@@ -74,6 +74,16 @@ impl RecordArguments {
         self.table.reading(self.rate_unit)
     }
 
+    /// The unit of the rates that is stated.
+    pub(crate) fn rate_unit(&self) -> Option<RateUnit> {
+        self.rate_unit
+    }
+
+    /// The share of the rows that may be left out, where it is stated.
+    pub(crate) fn skipped_share(&self) -> Option<f64> {
+        self.skip_rows
+    }
+
     /// Which columns are the rates about x, y and z.
     pub(crate) fn axes(&self) -> Option<SignedAxes> {
         self.axes
