@@ -57,8 +57,9 @@ impl ReadingArguments {
         self.table.names_columns()
     }
 
-    /// Refuses a flag that says how columns are written that no body of the file has.
+    /// Refuses a flag that says how columns are written that no body of the file has, and a unit of times that have theirs.
     pub(super) fn check_used(&self, found: &FoundTrajectory) -> Result<(), Error> {
+        self.table.check_times(&found.read_as)?;
         let has = |of: fn(&Trajectory) -> bool| found.bodies.iter().any(|(_, rows)| of(rows));
         let frame = |axes: Axes| String::from(if axes == Axes::Body { "body" } else { "space" });
         let of_angles = self.attitude.given_of_angles();

@@ -182,6 +182,7 @@ impl RecordArguments {
 
     fn read(&self, path: &Path, wheel: Option<Vector3<f64>>) -> Result<FoundRecord, Error> {
         let found = record::open(path, &self.options(false), wheel).map_err(of_a_row)?;
+        self.table.check_times(&found.read_as)?;
         tell_skipped((found.skipped.len(), found.skipped.first()), found.record.samples());
         found.remarks.iter().for_each(|remark| warn(remark));
         Ok(found)

@@ -250,6 +250,21 @@ fn a_clock_in_milliseconds_is_named() {
 }
 
 #[test]
+fn a_unit_of_time_is_refused_where_times_have_theirs() {
+    let scratch = Scratch::new("heard-stamps");
+    let stamped = |row: &[f64]| {
+        let whole = row[0].floor();
+        [&[1.7e9 + whole, ((row[0] - whole) * 1e9).round()], &row[1..]].concat()
+    };
+    let header = "stamp.secs,stamp.nsecs,q_w,q_x,q_y,q_z,wx,wy,wz";
+    let file = made(&scratch, "stamp.csv", WITH_RATES, header, stamped);
+    assert_eq!(run(&format!("audit {file} {BODY}")).code, 0);
+    for command in [format!("audit {file} {BODY}"), format!("fit {file} --from rates")] {
+        refused(&format!("{command} --time-unit ms"), &["--time-unit: 'ms'", "are s and ns already"]);
+    }
+}
+
+#[test]
 fn the_unit_of_a_simulated_start_is_the_one_that_is_named() {
     let line = "simulate --moments 1,2,2.6 --until 2 --every 0.1";
     let plain = output(&format!("{line} --omega 0.5,1,0.25"));
