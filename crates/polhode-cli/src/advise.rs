@@ -87,6 +87,7 @@ const SHOWN: usize = 10;
 
 impl Advise {
     pub(crate) fn run(&self) -> Result<(), Error> {
+        self.motion.start.check_angles(false, false)?;
         for name in self.exclude.iter().filter(|name| *name != "exact") {
             if let Err(error) = method(name)
                 && !BASES.contains(&name.as_str())

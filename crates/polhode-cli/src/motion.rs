@@ -93,6 +93,7 @@ pub(crate) struct Motion {
 
 impl Motion {
     pub(crate) fn run(&self) -> Result<(), Error> {
+        self.start.check_angles(false, false)?;
         let (body, of_file) = self.body.free()?;
         let body = self
             .wheels

@@ -38,6 +38,11 @@ impl Reference {
             let rule = "counts steps of a length that it does not tell";
             return Err(Error::input("--against", &name, rule, "write its times in s"));
         }
+        if !found.second_attitude.is_empty() {
+            let second = found.second_attitude.join(", ");
+            let rule = format!("the columns {second} hold another attitude, which is not read");
+            return Err(Error::input("--against", &name, &rule, "write a file with one attitude"));
+        }
         let mut bodies = found.bodies;
         let rows = match (bodies.len(), bodies.pop()) {
             (1, Some((_, rows))) if rows.attitude.is_some() => rows,

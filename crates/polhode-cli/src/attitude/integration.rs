@@ -97,7 +97,7 @@ impl Integration {
         let apart = |other: Option<Strapdown<f64>>| {
             let mut other = other?;
             other.finish();
-            Some(last.attitude.angle_to(&other.attitude().into()))
+            Some(last.error(other.attitude().into()).norm())
         };
         let line = apart(self.trapezoid).map_or(String::new(), |angle| {
             format!("; the trapezoid with coning would be off by {angle:.1e} rad from it")

@@ -5,6 +5,8 @@ use std::path::Path;
 use clap::{Args, ValueEnum};
 use polhode::record::{Segment, Spike};
 use polhode::strapdown::{Kind, StrapdownError};
+use polhode::units::RateUnit;
+use polhode_files::NamedBy;
 use polhode_files::error::{Error, tell, warn};
 use polhode_files::record::{Part, Parts};
 use polhode_files::text::{rounded, short};
@@ -100,6 +102,9 @@ impl KindArguments {
                 return Err(Error::input("--kind", "", &rule, remedy));
             }
         };
+        if kind == Kind::Increment {
+            check_unit(&parts)?;
+        }
         let is_unit_open = parts.rate_unit().is_none() && !parts.are_increments();
         let parts = if whole { parts.whole() } else { parts };
         // an increment that stands out is none that may be left out, as its turn would be lost
@@ -114,6 +119,25 @@ impl KindArguments {
             last: None,
             found: Found::default(),
         })
+    }
+}
+
+/// Refuses a unit of rates for increments, which are angles; rad/s and deg/s of a flag stand for rad and deg.
+fn check_unit(parts: &Parts) -> Result<(), Error> {
+    let Some((unit, by)) = parts.read_as().rates.filter(|_| !parts.are_increments()) else { return Ok(()) };
+    match by {
+        NamedBy::Header | NamedBy::Layout => {
+            let name = parts.name();
+            let rule = format!("the unit of the columns of {name} is {unit} ({by}), that of a rate");
+            let remedy = "give --kind rate or average, or name a unit of angles, rad or deg, in the header";
+            Err(Error::input("--kind", Kind::Increment.name(), &rule, remedy))
+        }
+        NamedBy::Setting if unit == RateUnit::RevolutionsPerMinute => {
+            let rule = "increments are angles, and this is the unit of a rate";
+            let remedy = "convert them to rad, or to deg and give --rate-unit deg/s";
+            Err(Error::input("--rate-unit", &unit.to_string(), rule, remedy))
+        }
+        _ => Ok(()),
     }
 }
 
@@ -198,6 +222,7 @@ impl Readings {
             ..
         } = self.found;
         tell_skipped(self.parts.skipped(), samples);
+        self.tell_times();
         if self.is_unit_open {
             let (read, other) = match self.kind {
                 Kind::Increment => ("rad", "name the unit of an angle in the header"),
@@ -229,6 +254,21 @@ impl Readings {
             warn(&format!(
                 "{saturated} samples at the end of the sensor's range are left out, at an end of the record"
             ));
+        }
+    }
+
+    /// The unit of the times; where it is guessed from large numbers, a warning.
+    fn tell_times(&self) {
+        let mut read_as = self.parts.read_as();
+        read_as.rates = None;
+        let (name, units) = (self.name(), read_as.units());
+        let (times, by) = &read_as.times;
+        if *by == NamedBy::Values && times.ends_with("since 1970") {
+            warn(&format!(
+                "{name}: {units}; if they count from another time, as from the start of the device, give their unit by --time-unit"
+            ));
+        } else {
+            tell("note", &format!("{name}: {units}"));
         }
     }
 

@@ -1,7 +1,7 @@
 //! The flags that say how a record is to be read.
 
 use clap::{Args, ValueEnum};
-use polhode::audit::{Convention, Frame};
+use polhode::audit::{Attitudes, Convention, Frame, Trajectory};
 use polhode::units::RateUnit;
 use polhode_files::ReadOptions;
 use polhode_files::error::Error;
@@ -55,6 +55,29 @@ impl ReadingArguments {
     /// Whether a flag names columns.
     pub(super) fn names_columns(&self) -> bool {
         self.table.names_columns()
+    }
+
+    /// Refuses a flag that says how columns are written that no body of the file has, and a unit of times that have theirs.
+    pub(super) fn check_used(&self, found: &FoundTrajectory) -> Result<(), Error> {
+        self.table.check_times(&found.read_as)?;
+        let has = |of: fn(&Trajectory) -> bool| found.bodies.iter().any(|(_, rows)| of(rows));
+        let frame = |axes: Axes| String::from(if axes == Axes::Body { "body" } else { "space" });
+        let of_angles = self.attitude.given_of_angles();
+        let of_momentum = self.momentum_frame.map(|axes| ("--momentum-frame", frame(axes)));
+        let of_rates = self.omega_frame.map(|axes| ("--omega-frame", frame(axes)));
+        let has_angles = has(|rows| matches!(rows.attitude, Some(Attitudes::Angles(_))));
+        for (flag, is_used, what) in [
+            (of_angles, has_angles, "a triple of Euler angles"),
+            (of_momentum, has(|rows| rows.momentum.is_some()), "an angular momentum"),
+            (of_rates, has(|rows| rows.rates.is_some()), "an angular velocity"),
+        ] {
+            if let Some((flag, value)) = flag.filter(|_| !is_used) {
+                let rule = format!("says how {what} is written, and the record has none");
+                let remedy = "leave it out, or name the columns by --columns";
+                return Err(Error::input(flag, &value, &rule, remedy));
+            }
+        }
+        Ok(())
     }
 
     /// The Euler angles in the order of the sequence that is stated.

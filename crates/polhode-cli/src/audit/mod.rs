@@ -83,7 +83,9 @@ pub(crate) struct Audit {
     #[arg(long, value_name = "GOLDEN.csv", conflicts_with_all = ["BodyArguments", "weight_moment"], help_heading = "Verdict")]
     against: Option<PathBuf>,
     /// Write golden trajectories and programs that check against them into this folder
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["record", "against", "BodyArguments", "id", "tolerance", "noise", "figure", "report", "format", "out"], help_heading = "Output")]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["record", "against", "BodyArguments", "id", "tolerance", "noise", "figure", "report", "format", "out",
+        "columns", "time_unit", "sample_rate", "quaternion", "attitude", "euler", "angle_unit", "omega_frame", "momentum_frame", "rate_unit", "any_order",
+        "wheels", "weight_moment", "gravity_gradient", "orbit", "orbit_plane", "orbit_table", "torque_body", "torque_space", "drag"], help_heading = "Output")]
     golden: Option<PathBuf>,
     /// Draw the errors of energy, |m|, direction of L and attitude against time to this file
     #[arg(long, value_name = "FILE.svg", help_heading = "Output")]
@@ -180,6 +182,7 @@ impl Audit {
         }
         memory::check_files(&[path.to_path_buf()], 2)?;
         let mut found = trajectory::read(path, &self.reading.table())?;
+        self.reading.check_used(&found)?;
         self.reading.order(&mut found)?;
         if !found.second_attitude.is_empty() && !self.reading.names_columns() {
             let rule = format!(
@@ -201,6 +204,10 @@ impl Audit {
                 let known: Vec<String> = found.bodies.iter().filter_map(|(id, _)| id.clone()).collect();
                 let chosen: Vec<_> =
                     found.bodies.into_iter().filter(|(id, _)| id.as_ref() == Some(wanted)).collect();
+                if chosen.is_empty() && known.is_empty() {
+                    let rule = "no column names the bodies of the record";
+                    return Err(Error::input("--id", wanted, rule, "leave it out, or name one by --columns"));
+                }
                 if chosen.is_empty() {
                     return Err(Error::unknown_name(
                         "--id",

@@ -98,6 +98,7 @@ pub(crate) struct Compare {
 
 impl Compare {
     pub(crate) fn run(&self) -> Result<(), Error> {
+        self.motion.start.check_angles(false, false)?;
         let body = self.motion.body(self.start_time)?;
         let start = self.motion.start(&body, self.start_time)?;
         let span = self.span()?;

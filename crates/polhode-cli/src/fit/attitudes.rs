@@ -162,6 +162,16 @@ impl PoseArguments {
             }
             _ => {}
         }
+        if let Some(unit) = reading.rate_unit().filter(|_| self.from != Some(From::Both)) {
+            let rule = "is the unit of the rates, and attitudes are fitted";
+            let remedy = "leave it out, or fit the rates";
+            return Err(Error::input("--rate-unit", &unit.to_string(), rule, remedy));
+        }
+        if let Some(share) = reading.skipped_share() {
+            let rule = "of attitudes every row is read";
+            let remedy = "leave it out, and remove the rows that cannot be read";
+            return Err(Error::input("--skip-rows", &share.to_string(), rule, remedy));
+        }
         let mut all: Option<Read> = None;
         for (k, path) in data.iter().enumerate() {
             let mut one = self.of_file(path, reading)?;

@@ -2,6 +2,7 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::audit::Direction;
+use polhode::rotation::Quat;
 
 /// Turns between two samples beyond which the mean of their rates says little, rad.
 const LARGEST: f64 = 0.5;
@@ -28,12 +29,12 @@ pub(super) fn about_space(
     let (mut left, mut all, mut count) = ([[0.0; 2]; 2], 0.0, 0.0);
     for k in 1..times.len() {
         let step = times[k] - times[k - 1];
-        let turn = (attitudes[k - 1].inverse() * attitudes[k]).scaled_axis();
+        let turn = rotation_vector(attitudes[k - 1].inverse() * attitudes[k]);
         if !(step > 0.0 && turn.norm() < LARGEST) {
             continue;
         }
         let behind = turn / step;
-        let before = (attitudes[k] * attitudes[k - 1].inverse()).scaled_axis() / step;
+        let before = rotation_vector(attitudes[k] * attitudes[k - 1].inverse()) / step;
         let rate = (rates[k - 1] + rates[k]) * 0.5;
         left[0][0] += (rate - behind).norm_squared();
         left[0][1] += (rate - before).norm_squared();
@@ -50,6 +51,11 @@ pub(super) fn about_space(
     let (body, space) = (of(0), of(1));
     let is_space = space < AGREE * all && body > DISAGREE.0 * all && body > DISAGREE.1 * space;
     is_space.then(|| Left { body: (body / count).sqrt(), space: (space / count).sqrt() })
+}
+
+/// The same bits on every CPU, of length 0 to pi.
+fn rotation_vector(turn: UnitQuaternion<f64>) -> Vector3<f64> {
+    Quat::from(turn).logarithm().into()
 }
 
 #[cfg(test)]

@@ -94,12 +94,17 @@ impl AttitudeArguments {
     pub(crate) fn given(&self) -> Option<(&'static str, String)> {
         let order = self.quaternion.map(|order| ("--quaternion", typed(order)));
         let direction = self.attitude.map(|to| ("--attitude", typed(to)));
+        order.or(direction).or_else(|| self.given_of_angles())
+    }
+
+    /// The first flag of Euler angles that is given, and its value.
+    pub(crate) fn given_of_angles(&self) -> Option<(&'static str, String)> {
         let euler = self.euler.map(|(sequence, turns)| {
             let behind = if turns == Turns::Extrinsic { ":extrinsic" } else { "" };
             ("--euler", format!("{sequence}{behind}"))
         });
         let unit = self.angle_unit.map(|unit| ("--angle-unit", unit.to_string()));
-        order.or(direction).or(euler).or(unit)
+        euler.or(unit)
     }
 
     /// Angles in columns of the names roll, pitch and yaw, in the order of the sequence that is stated.

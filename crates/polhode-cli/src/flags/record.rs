@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use nalgebra::Vector3;
-use polhode::record::Record;
+use polhode::record::{Record, Segment};
 use polhode::units::RateUnit;
 use polhode_files::error::{Error, TableError, warn};
 use polhode_files::numbers::{number, numbers};
@@ -74,6 +74,16 @@ impl RecordArguments {
         self.table.reading(self.rate_unit)
     }
 
+    /// The unit of the rates that is stated.
+    pub(crate) fn rate_unit(&self) -> Option<RateUnit> {
+        self.rate_unit
+    }
+
+    /// The share of the rows that may be left out, where it is stated.
+    pub(crate) fn skipped_share(&self) -> Option<f64> {
+        self.skip_rows
+    }
+
     /// Which columns are the rates about x, y and z.
     pub(crate) fn axes(&self) -> Option<SignedAxes> {
         self.axes
@@ -102,11 +112,19 @@ impl RecordArguments {
     ) -> Result<([Record; N], Vec<ReadAs>), Error> {
         self.check_windows(data.iter().map(|files| files.len()).sum())?;
         self.tell_axes();
-        let (mut all, mut read_as) = (core::array::from_fn(|_| Record::default()), Vec::new());
+        let mut all: [Record; N] = core::array::from_fn(|_| Record::default());
+        let mut read_as = Vec::new();
         let each = data.iter().enumerate().flat_map(|(of, files)| files.iter().map(move |path| (of, path)));
         for (k, (of, path)) in each.enumerate() {
             let found = self.read(path, wheel)?;
-            all[of] = core::mem::take(&mut all[of]).join(self.cut(found.record, k)?);
+            let record = self.cut(found.record, k)?;
+            if all.iter().any(|before| holds(before, &record)) {
+                warn(&format!(
+                    "{}: times and rates are those of a file before it; readings that count twice make the standard deviations too small",
+                    found.read_as.file
+                ));
+            }
+            all[of] = core::mem::take(&mut all[of]).join(record);
             read_as.push(found.read_as);
         }
         Ok((all, read_as))
@@ -164,10 +182,18 @@ impl RecordArguments {
 
     fn read(&self, path: &Path, wheel: Option<Vector3<f64>>) -> Result<FoundRecord, Error> {
         let found = record::open(path, &self.options(false), wheel).map_err(of_a_row)?;
+        self.table.check_times(&found.read_as)?;
         tell_skipped((found.skipped.len(), found.skipped.first()), found.record.samples());
         found.remarks.iter().for_each(|remark| warn(remark));
         Ok(found)
     }
+}
+
+/// Whether `all` has every segment of `record`.
+fn holds(all: &Record, record: &Record) -> bool {
+    let is_same = |a: &Segment, b: &Segment| a.times() == b.times() && a.rates() == b.rates();
+    !record.segments.is_empty()
+        && record.segments.iter().all(|own| all.segments.iter().any(|other| is_same(own, other)))
 }
 
 /// A refusal of a row, with the flag that allows for more such rows.

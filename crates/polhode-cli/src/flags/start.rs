@@ -150,6 +150,27 @@ impl StartArguments {
             || self.tumbling.is_given()
     }
 
+    /// Refuses a unit of angles and a sequence of them that no flag uses; whether a command uses either elsewhere.
+    pub(crate) fn check_angles(&self, uses_unit: bool, uses_sequence: bool) -> Result<(), Error> {
+        let has_angles = self.angles.is_some();
+        if let Some(Factor(unit)) = self.angle_unit
+            && !(uses_unit || has_angles || self.tumbling.has_angles())
+        {
+            let value = if unit == 1.0 { "rad" } else { "deg" };
+            let rule = "is the unit of angles, and none are given";
+            let remedy = "leave it out, or give --angles, --pole or --phases; --rate-unit is that of --omega";
+            return Err(Error::input("--angle-unit", value, rule, remedy));
+        }
+        if let Some(sequence) = self.euler
+            && !(uses_sequence || has_angles)
+        {
+            let (rule, remedy) =
+                ("is the sequence of angles, and none are given", "leave it out, or give --angles");
+            return Err(Error::input("--euler", &sequence.to_string(), rule, remedy));
+        }
+        Ok(())
+    }
+
     /// Says what the attitude refers to where it is that of the catalogue, and which density a mesh has.
     pub(crate) fn note(&self, body: &BodyArguments) {
         if let Some(file) = body.mesh() {

@@ -3,8 +3,9 @@
 use clap::{Args, ValueEnum};
 use polhode::audit::QuaternionOrder;
 use polhode::units::{RateUnit, TimeUnit};
+use polhode_files::error::Error;
 use polhode_files::numbers::positive;
-use polhode_files::{ColumnNames, ReadOptions};
+use polhode_files::{ColumnNames, ReadAs, ReadOptions};
 
 /// Columns and times of a table.
 #[derive(Args, Clone, Debug)]
@@ -30,6 +31,18 @@ impl TableArguments {
     /// Whether a flag names columns.
     pub(crate) fn names_columns(&self) -> bool {
         self.columns.is_some()
+    }
+
+    /// Refuses a unit of time where times are dates, or seconds and nanoseconds in two columns.
+    pub(crate) fn check_times(&self, read_as: &ReadAs) -> Result<(), Error> {
+        let (times, _) = &read_as.times;
+        match self.time_unit {
+            Some(unit) if times == "dates" || times == "s and ns" => {
+                let rule = format!("the times of {} are {times} already", read_as.file);
+                Err(Error::input("--time-unit", &unit.to_string(), &rule, "leave it out"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// What they say, with the unit of the angular velocity.

@@ -125,6 +125,11 @@ impl TumblingArguments {
         self.periods.is_some()
     }
 
+    /// Whether a flag has angles.
+    pub(crate) fn has_angles(&self) -> bool {
+        self.pole.is_some() || self.phases.is_some()
+    }
+
     /// The elements that the flags state, if they do.
     pub(crate) fn elements(&self, angle_unit: f64) -> Result<Option<TumblingElements>, Error> {
         let Some(periods) = self.periods else { return Ok(None) };

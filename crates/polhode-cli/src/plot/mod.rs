@@ -125,8 +125,8 @@ pub(crate) struct Plot {
     #[arg(long, value_name = "AZ,EL", value_parser = angle, allow_hyphen_values = true, help_heading = "Picture")]
     view: Option<[f64; 2]>,
     /// Size: column (500x400), wide (860x400), slide (960x540) or WIDTHxHEIGHT in pixels; long titles, several panels and equal scales make a picture higher; a PNG has twice as many pixels [default: column]
-    #[arg(long, value_name = "SIZE", value_parser = size, default_value = "column", hide_default_value = true, help_heading = "Picture")]
-    size: Size,
+    #[arg(long, value_name = "SIZE", value_parser = size, help_heading = "Picture")]
+    size: Option<Size>,
     /// The picture; its ending names the format: .svg, .png or .html
     #[arg(long, value_name = "FILE", help_heading = "Picture")]
     out: PathBuf,
@@ -176,6 +176,7 @@ pub(crate) fn write(file: Output, picture: Picture, page: &Canvas) -> Result<(),
 
 impl Plot {
     pub(crate) fn run(&self) -> Result<(), Error> {
+        self.motion.start.check_angles(false, self.kind == Kind::Angles)?;
         let known: &[Picture] = match self.kind {
             Kind::Poinsot => &[Picture::Svg, Picture::Png, Picture::Html],
             _ => &[Picture::Svg, Picture::Png],
@@ -193,6 +194,9 @@ impl Plot {
             return Err(Error::Input(
                 "--view: only polhode, trace and the still of poinsot are seen from a direction; leave it out".into(),
             ));
+        }
+        if self.size.is_some() && picture == Picture::Html {
+            return Err(Error::Input("--size: only .svg and .png have a size; leave it out".into()));
         }
         let file = Output::to_file("--out", &self.out)?;
         let looks = Looks::of(&self.course())?;
@@ -254,7 +258,7 @@ impl Plot {
 
     /// Width and height, pixels.
     fn size(&self) -> [f64; 2] {
-        self.size.0.unwrap_or(SIZES[0].1)
+        self.size.unwrap_or_default().0.unwrap_or(SIZES[0].1)
     }
 
     /// What is seen, of which body, from which start on, by which method.

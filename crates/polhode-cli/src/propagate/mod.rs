@@ -99,6 +99,7 @@ pub(crate) struct Propagate {
 
 impl Propagate {
     pub(crate) fn run(&self) -> Result<(), Error> {
+        self.motion.start.check_angles(self.observer.is_some(), true)?;
         let t = self.times.start()?;
         let body = self.motion.body(t)?;
         if let Some(file) = &self.through {

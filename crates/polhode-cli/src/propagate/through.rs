@@ -90,6 +90,11 @@ fn read(file: &Path) -> Result<Vec<(f64, UnitQuaternion<f64>)>, Error> {
     if found.counts_steps {
         return refused("counts steps of a length that it does not tell", "write the times in s");
     }
+    if !found.second_attitude.is_empty() {
+        let second = found.second_attitude.join(", ");
+        let rule = format!("the columns {second} hold another attitude, which is not read");
+        return refused(&rule, "write a file with one attitude");
+    }
     let mut bodies = found.bodies;
     let (1, Some((_, rows))) = (bodies.len(), bodies.pop()) else {
         return refused("has several bodies", "name a file of one body");

@@ -98,6 +98,7 @@ pub(crate) struct Show {
 
 impl Show {
     pub(crate) fn run(&self) -> Result<(), Error> {
+        self.motion.start.check_angles(false, false)?;
         Picture::of("--out", &self.out, &[Picture::Html])?;
         if self.against.len() > MOST_RIVALS {
             let rule = format!("given {} times, and a page shows at most {MOST_RIVALS}", self.against.len());

@@ -120,8 +120,40 @@ fn the_kind_is_told_by_the_unit_or_asked_for() {
     let angles = rows("t (s),wx (rad),wy (rad),wz (rad)");
     assert!((angle(&answer(&angles, "")) - 49.0 * size).abs() < 1e-12);
     refused_with(&["attitude", &angles, "--kind", "rate"], &["--kind", "unit", "angle", "increment"]);
+    refused_with(
+        &["attitude", &rates, "--kind", "increment"],
+        &["--kind: 'increment'", "rad/s (header), that of a rate", "rad or deg"],
+    );
+    refused_with(
+        &["attitude", &silent, "--kind", "increment", "--rate-unit", "rpm"],
+        &["--rate-unit: 'rpm'", "increments are angles"],
+    );
+    let degrees = answer(&silent, "--kind increment --rate-unit deg/s");
+    assert!((angle(&degrees) - (49.0 * size).to_radians()).abs() < 1e-12);
     // a fit needs rates
     refused_with(&["fit", &angles], &["column 2 (wx (rad))", "rad/s, deg/s, rpm"]);
+}
+
+#[test]
+fn the_unit_of_the_times_is_told() {
+    let scratch = Scratch::new("attitude-times");
+    let told = |time: &str, first: u64, step: u64, flags: &str| {
+        let rows: String = (0..50).map(|k| format!("{},0.01,0.02,0.03\n", first + k * step)).collect();
+        let file = scratch.file("times.csv", format!("{time},wx (rad/s),wy (rad/s),wz (rad/s)\n{rows}"));
+        let answer = run(&format!("attitude {file} --kind rate {flags}"));
+        assert_ne!(answer.code, 2, "{answer:?}");
+        answer.err
+    };
+    let bare = told("t", 0, 10, "");
+    assert!(bare.contains("note: ") && bare.contains("times taken as s (no unit in the header)"), "{bare}");
+    assert!(told("t (ms)", 0, 10, "").contains("times in ms (header)"));
+    assert!(told("t", 0, 10, "--time-unit ms").contains("times in ms (as stated)"));
+    // 14 days in ns are as many as 38 years in us
+    let guessed = told("timestamp", 1_200_000_000_000_000, 10_000_000, "");
+    let says = "times in us since 1970 (by the values); if they count from another time";
+    assert!(guessed.lines().any(|line| line.starts_with("warning: ") && line.contains(says)), "{guessed}");
+    let stated = told("timestamp", 1_200_000_000_000_000, 10_000_000, "--time-unit ns");
+    assert!(stated.contains("times in ns (as stated)") && !stated.contains("since 1970"), "{stated}");
 }
 
 #[test]
@@ -165,7 +197,7 @@ fn records_that_tell_no_attitude_are_refused_by_name() {
         "{}",
         of_bare("")
     );
-    assert!(!of_bare("--rate-unit rad/s").contains("no unit"));
+    assert!(!of_bare("--rate-unit rad/s").contains("no unit of the readings"));
     let with = |flags: &str| format!("attitude {plain} {flags}");
     let refused = |flags: &str, says: &[&str]| refused_with(&words(&with(flags)), says);
     refused("--samples 5", &["--samples", "5", "even"]);

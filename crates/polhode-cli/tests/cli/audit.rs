@@ -308,7 +308,17 @@ fn what_cannot_be_audited_is_refused_with_file_line_and_column() {
         &["--golden", "README.md of another kind", "empty folder"],
     );
     assert_eq!(fs::read_to_string(own).unwrap(), "# Mine\n");
-    for flags in ["--report r.html", "--figure f.svg", "--out o.json", "--tolerance 1e-3", "--id 3"] {
+    for flags in [
+        "--report r.html",
+        "--figure f.svg",
+        "--out o.json",
+        "--tolerance 1e-3",
+        "--id 3",
+        "--time-unit ms",
+        "--drag 0.1",
+        "--omega-frame space",
+        "--wheel 1,0,0,0.1@3",
+    ] {
         let line = format!("audit --golden {} {flags}", scratch.0.join("new").display());
         refused(&line, &["--golden", "cannot be used with"]);
     }
@@ -440,6 +450,22 @@ fn columns_that_are_not_read_are_named_and_none_stands_twice() {
     assert!(answer.err.contains("columns 2 and 9 have this one name"), "{answer:?}");
     let answer = run(&format!("audit {beside} {BODY} --tolerance 0.5"));
     assert!(answer.code == 2 && answer.err.contains("0.5 is more than 0.1"), "{answer:?}");
+}
+
+#[test]
+fn flags_of_columns_that_a_record_has_not_are_refused() {
+    let scratch = Scratch::new("audit-flags");
+    let columns = "t,q_w,q_x,q_y,q_z,omega_body_x,omega_body_y,omega_body_z";
+    let file = scratch.file("free.csv", table(columns, rows("").iter().map(|r| r.to_vec())));
+    for (flag, value) in
+        [("--euler", "zyx"), ("--angle-unit", "deg"), ("--momentum-frame", "space"), ("--id", "3")]
+    {
+        let says = format!("{flag}: '{value}'");
+        refused(&format!("audit {file} {BODY} {flag} {value}"), &[says.as_str(), "leave it out"]);
+    }
+    let poses = table("t,q_w,q_x,q_y,q_z", rows("").iter().map(|r| r[..5].to_vec()));
+    let poses = scratch.file("poses.csv", poses);
+    refused(&format!("audit {poses} {BODY} --omega-frame body"), &["--omega-frame: 'body'", "leave it out"]);
 }
 
 #[test]

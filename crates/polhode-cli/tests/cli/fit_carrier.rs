@@ -146,6 +146,15 @@ fn what_a_joint_fit_cannot_use_is_refused() {
         &format!("{line} --proof-body 1,2,2.6 --proof-at 0,0,0.1,0 --carrier-mass 2"),
         &["--proof-at", "the mass is not positive"],
     );
+    refused(
+        &format!("{line} {PROOF} --object-at -0.04,0.04,0.02,2"),
+        &["--object-at: no record has the object", "DATA.csv"],
+    );
+    refused(
+        &format!("{line} --proof-body 1,2,2.6 --carrier-mass 6"),
+        &["--carrier-mass: '6'", "--proof-at or --object-at"],
+    );
+    refused(&format!("{line} {PROOF} --product jpl"), &["--product"]);
     refused(&format!("{line} --proof-body 1,1,3"), &["--proof-body", "violate I1 + I2 >= I3"]);
     refused(&format!("{line} --proof-body 1,2"), &["--proof-body", "2 numbers"]);
     refused(&format!("{line} --proof-body nosuch"), &["--proof-body", "nosuch"]);

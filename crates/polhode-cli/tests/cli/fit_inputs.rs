@@ -104,6 +104,16 @@ fn a_wheel_is_calibrated_by_a_body_that_is_known() {
 }
 
 #[test]
+fn readings_under_two_names_are_said_to_count_twice() {
+    let scratch = Scratch::new("fit-twice");
+    let text = output(&format!("{SIMULATE} --until 20 --noise 1e-3"));
+    let (one, copy) = (scratch.file("one.csv", &text), scratch.file("copy.csv", &text));
+    let told = run(&format!("fit {one} {copy}"));
+    assert!(told.err.contains("copy.csv: times and rates are those of a file before it"), "{told:?}");
+    assert!(!run(&format!("fit {one}")).err.contains("count twice"));
+}
+
+#[test]
 fn columns_that_are_not_used_are_named() {
     let scratch = Scratch::new("fit-unused");
     let text = output(&format!("{SIMULATE} --until 20 --noise 1e-3"));

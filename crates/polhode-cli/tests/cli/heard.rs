@@ -153,6 +153,8 @@ fn what_a_fit_cannot_use_or_write_is_refused() {
     let rates = written(&scratch, "rates.csv", "t,omega", "t,wx (rad/s),wy (rad/s),wz (rad/s)");
     let poses = written(&scratch, "poses.csv", "t,q", "t,q_w,q_x,q_y,q_z");
     refused(&format!("fit {poses} --axes x,-y,z"), &["--axes", "attitudes are fitted"]);
+    refused(&format!("fit {poses} --rate-unit deg/s"), &["--rate-unit: 'deg/s'", "attitudes are fitted"]);
+    refused(&format!("fit {poses} --skip-rows 0.1"), &["--skip-rows: '0.1'", "every row is read"]);
     refused(&format!("fit {rates} --attitude-noise 0.1"), &["--attitude-noise", "rates are fitted"]);
     let flags = [
         "--euler zyx",
@@ -220,6 +222,19 @@ fn what_other_commands_cannot_use_is_refused_or_said() {
 }
 
 #[test]
+fn of_two_attitudes_none_is_taken_for_the_one_that_is_meant() {
+    let scratch = Scratch::new("heard-second");
+    let both = |row: &[f64]| [row, &row[1..]].concat();
+    let header = "t,q_w,q_x,q_y,q_z,box2_qw,box2_qx,box2_qy,box2_qz";
+    let file = made(&scratch, "second.csv", "t,q", header, both);
+    let rates = written(&scratch, "rates.csv", "t,omega", "t,wx (rad/s),wy (rad/s),wz (rad/s)");
+    let says = "the columns box2_qw, box2_qx, box2_qy, box2_qz hold another attitude";
+    refused(&format!("attitude {rates} --against {file}"), &["--against", "second.csv", says]);
+    refused(&format!("propagate {BODY} --through {file} --every 0.5"), &["--through", "second.csv", says]);
+    refused(&format!("audit {file} {BODY}"), &["second.csv", says]);
+}
+
+#[test]
 fn a_second_time_that_contradicts_the_first_is_named() {
     let scratch = Scratch::new("heard-time");
     let header = "t,time_ms,q_w,q_x,q_y,q_z,omega_body_x,omega_body_y,omega_body_z";
@@ -244,6 +259,21 @@ fn a_clock_in_milliseconds_is_named() {
     assert_eq!(answer.code, 1, "{answer:?}");
     assert!((answer.out + &answer.err).contains("--time-unit ms"));
     assert_eq!(run(&format!("audit {file} {BODY} --time-unit ms")).code, 0);
+}
+
+#[test]
+fn a_unit_of_time_is_refused_where_times_have_theirs() {
+    let scratch = Scratch::new("heard-stamps");
+    let stamped = |row: &[f64]| {
+        let whole = row[0].floor();
+        [&[1.7e9 + whole, ((row[0] - whole) * 1e9).round()], &row[1..]].concat()
+    };
+    let header = "stamp.secs,stamp.nsecs,q_w,q_x,q_y,q_z,wx,wy,wz";
+    let file = made(&scratch, "stamp.csv", WITH_RATES, header, stamped);
+    assert_eq!(run(&format!("audit {file} {BODY}")).code, 0);
+    for command in [format!("audit {file} {BODY}"), format!("fit {file} --from rates")] {
+        refused(&format!("{command} --time-unit ms"), &["--time-unit: 'ms'", "are s and ns already"]);
+    }
 }
 
 #[test]

@@ -86,6 +86,23 @@ fn periods_without_a_motion_are_refused() {
 }
 
 #[test]
+fn a_unit_or_a_sequence_of_angles_that_none_are_given_in_is_refused() {
+    let start = "--moments 1,2,3 --omega 0.4,1,-0.3";
+    for command in
+        ["motion", "compare --until 1 --methods rk4 --steps 0.1", "plot omega --until 1 --out a.svg"]
+    {
+        refused(&format!("{command} {start} --angle-unit deg"), &["--angle-unit: 'deg'", "--rate-unit"]);
+        refused(&format!("{command} {start} --euler zyx"), &["--euler: 'zyx'", "give --angles"]);
+    }
+    refused(&format!("propagate {start} --times 0 --angle-unit deg"), &["--angle-unit", "none are given"]);
+    let periods = "--moments 0.61,0.965,1 --periods 27.38h,263h --mode sam";
+    refused(&format!("motion {periods} --angle-unit deg"), &["--angle-unit", "none are given"]);
+    // which are of use beside angles, or where the command prints them
+    output(&format!("motion {start} --angles 10,20,30 --euler zyx --angle-unit deg"));
+    output(&format!("propagate {start} --times 0 --euler zyx"));
+}
+
+#[test]
 fn any_two_of_three_periods_are_a_start() {
     let of = |periods: &str| {
         let text = output(&format!("motion --moments 0.61,0.965,1 --mode sam --periods {periods}"));

@@ -220,6 +220,7 @@ fn what_cannot_be_drawn_is_refused_with_what_can() {
     refused(&with("omega", "--axis x --out a.svg"), &["--axis: only trace"]);
     refused(&with("omega", "--view 30,20 --out a.svg"), &["--view: only polhode, trace and"]);
     refused(&with("poinsot", "--view 30,20 --out a.html"), &["--view: only polhode, trace and"]);
+    refused(&with("poinsot", "--size wide --out a.html"), &["--size: only .svg and .png"]);
     refused(&with("omega", "--step 0.1 --out a.svg"), &["--step", "exact takes no step"]);
     refused(&with("omega", "--tolerance 1e-9 --out a.svg"), &["--tolerance", "takes no --tolerance"]);
     refused(&with("omega", "--method rk4 --out a.svg"), &["--step: missing: rk4 needs a step"]);

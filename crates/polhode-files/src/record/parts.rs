@@ -8,6 +8,7 @@ use polhode::units::RateUnit;
 use super::ReadOptions;
 use super::rows::{Row, Rows};
 use crate::error::{Error, TableError};
+use crate::read_as::ReadAs;
 use crate::table::Table;
 
 /// Rows of a part.
@@ -120,6 +121,12 @@ impl Parts {
     #[must_use]
     pub fn rate_unit(&self) -> Option<RateUnit> {
         self.rows.rate_unit()
+    }
+
+    /// In which units it is read: of times as far as the rows that were read tell, and without the samples a second.
+    #[must_use]
+    pub fn read_as(&self) -> ReadAs {
+        self.rows.table.read_as(Vec::new())
     }
 
     /// Whether there are further parts.

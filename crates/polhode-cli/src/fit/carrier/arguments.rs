@@ -19,7 +19,7 @@ pub(crate) struct CarrierArguments {
     /// DATA and --object-proof, in this order
     #[arg(long, value_name = "FILE.csv", help_heading = "Carrier", conflicts_with_all = [
         "at_least", "at_most", "body", "trace", "momentum", "twice_energy", "moment", "prior_inertia", "prior_shape",
-        "residuals", "figure", "from", "quaternion", "attitude", "euler", "angle_unit", "attitude_noise",
+        "residuals", "figure", "from", "quaternion", "attitude", "product", "euler", "angle_unit", "attitude_noise",
     ])]
     carrier: Vec<PathBuf>,
     /// Record of carrier and proof body: it gives the size
@@ -73,6 +73,21 @@ impl CarrierArguments {
     /// Files of carrier, carrier and proof body, carrier and object, and all three.
     pub(crate) fn files<'a>(&'a self, data: &'a [PathBuf]) -> [&'a [PathBuf]; 4] {
         [&self.carrier, &self.proof, data, &self.object_proof]
+    }
+
+    /// Refuses a place or a mass that nothing uses; `has_object`: whether a record has the object on the carrier.
+    pub(super) fn check_used(&self, has_object: bool) -> Result<(), Error> {
+        if self.object_at.is_some() && !has_object {
+            let rule = "no record has the object on the carrier";
+            let remedy = "give DATA.csv or --object-proof, or leave it out";
+            return Err(Error::input("--object-at", "", rule, remedy));
+        }
+        if let (Some(mass), None, None) = (self.carrier_mass, self.proof_at, self.object_at) {
+            let rule = "goes with the place of a proof body or an object, and none is given";
+            let remedy = "give --proof-at or --object-at too, or leave it out";
+            return Err(Error::input("--carrier-mass", &mass.to_string(), rule, remedy));
+        }
+        Ok(())
     }
 
     /// The proof body on the carrier.

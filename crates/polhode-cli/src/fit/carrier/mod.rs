@@ -72,6 +72,7 @@ fn records(
 ) -> Result<(Result<CarrierRecords, CarrierError>, AsRead), Error> {
     let files = arguments.files(data);
     let given = files.map(|files| !files.is_empty());
+    arguments.check_used(given[2] || given[3])?;
     if !given[1] && !given[3] && arguments.proof_body()?.is_some() {
         let rule = "no record is of it";
         let remedy = "give --proof or --object-proof too, or leave it out";

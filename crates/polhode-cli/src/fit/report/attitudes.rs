@@ -1,6 +1,7 @@
 //! What a fit says of attitudes, in words and as JSON.
 
 use polhode::audit::Direction;
+use polhode::rotation::Quat;
 use polhode_fit::{AttitudeFit, Estimate};
 use serde_json::{Value, json};
 
@@ -41,7 +42,7 @@ pub(in super::super) fn sentences(e: &Estimate, read: Option<&Read>) -> Vec<Stri
     }
     lines.push(format!("largest turn from one attitude to the next {:.3} rad", of.largest_turn));
     if let Some(alignment) = of.alignment {
-        let turn = alignment.turn.scaled_axis();
+        let turn = Quat::from(alignment.turn).logarithm();
         let parts = [0, 1, 2].map(|k| with_error(turn[k].to_degrees(), alignment.sigma[k].to_degrees()));
         lines.push(format!(
             "axes of the rates from those of the attitudes by the rotation vector ({}) deg; the tensor is in the axes of the rates",
