@@ -73,8 +73,7 @@ pub enum WheelWarning {
 
 impl fmt::Display for WheelWarning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let unexplained =
-            "the known body and a wheel about this axis do not explain the rates: check the body, its axes, the axis of the wheel, and drag";
+        let unexplained = "the known body and a wheel about this axis do not explain the rates: check the body, its axes, the axis of the wheel, and drag";
         match self {
             Self::TorqueNoise { density } => write!(
                 f,

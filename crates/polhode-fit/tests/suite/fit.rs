@@ -349,10 +349,9 @@ fn a_size_by_what_differs_between_segments_is_refused() {
     let faster = equal * 1.5;
     let energy = |omega: Vector3<f64>| omega.dot(&(j * omega));
     let apart = joined(faster);
-    for (known, expected) in [
-        (Known::Momentum(momentum), 1.5),
-        (Known::TwiceEnergy(energy(one)), energy(faster) / energy(one)),
-    ] {
+    for (known, expected) in
+        [(Known::Momentum(momentum), 1.5), (Known::TwiceEnergy(energy(one)), energy(faster) / energy(one))]
+    {
         match fit(&apart, &Settings::default().with_known(known)) {
             Err(FitError::SizeDiffers { factor, largest: 1, smallest: 0, .. }) => {
                 assert!((factor / expected - 1.0).abs() < 0.01, "{known:?}: {factor} {expected}");
