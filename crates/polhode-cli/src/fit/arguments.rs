@@ -88,10 +88,10 @@ pub(super) struct KnownArguments {
     /// Trace of the tensor, kg m^2
     #[arg(long, value_name = "TRACE", value_parser = number, allow_hyphen_values = true)]
     trace: Option<f64>,
-    /// Magnitude of the angular momentum, kg m^2/s
+    /// Magnitude of the angular momentum, the same in all segments, kg m^2/s
     #[arg(long, value_name = "L", value_parser = number, allow_hyphen_values = true)]
     momentum: Option<f64>,
-    /// Twice the kinetic energy, kg m^2/s^2
+    /// Twice the kinetic energy, the same in all segments, kg m^2/s^2
     #[arg(long, value_name = "2T", value_parser = number, allow_hyphen_values = true)]
     twice_energy: Option<f64>,
     /// Moment about an axis, kg m^2

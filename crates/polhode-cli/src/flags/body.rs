@@ -21,7 +21,7 @@ pub(crate) struct BodyArguments {
     /// Tensor entries in body axes, I_xy = -sum m x y; or all nine, by rows
     #[arg(long, value_name = "Ixx,Iyy,Izz,Ixy,Ixz,Iyz", value_parser = tensor, allow_hyphen_values = true)]
     inertia: Option<Matrix3<f64>>,
-    /// Body of the catalogue, see `polhode bodies`; or a file: JSON of `polhode inertia` or `polhode fit`, TOML of parts, URDF or MJCF, with :LINK where it has several; a mesh, STL, OBJ or PLY, of density 1 kg/m^3
+    /// Body of the catalogue, see `polhode bodies`; or a file: JSON of `polhode inertia` or `polhode fit`, TOML of parts, URDF, MJCF or SDF, with :LINK where it has several; a mesh, STL, OBJ or PLY, of density 1 kg/m^3, where no force acts
     #[arg(long, value_name = "NAME|FILE[:LINK]")]
     body: Option<String>,
 }

@@ -18,7 +18,7 @@ use super::table::{TableArguments, rate_unit};
 pub(crate) struct RecordArguments {
     #[command(flatten)]
     table: TableArguments,
-    /// Fraction of the rows that may be left out because they cannot be read [default: 0.02]
+    /// Fraction of the rows of rates that may be left out because they cannot be read [default: 0.02]
     #[arg(long, value_name = "FRACTION", value_parser = share, allow_hyphen_values = true, help_heading = "Reading")]
     skip_rows: Option<f64>,
     /// Unit of the rates where the header names none: rad/s, deg/s, rpm [default: rad/s]

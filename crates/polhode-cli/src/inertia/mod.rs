@@ -46,7 +46,8 @@ const EXAMPLES: &str = "Examples:
 /// centre of mass. The base of a cone is at z = 0. Of a tensor that is not
 /// physically valid, the output states the violated law and by how much, the
 /// probable cause and the nearest valid tensor; the exit code is then 1. Every
-/// link of a robot model gets a line of its own.
+/// link of a robot model gets a line of its own. So does what is not read: an
+/// include of SDF, an element of xacro.
 ///
 /// A file of parts lists bodies that are summed:
 ///   [[part]]

@@ -65,7 +65,7 @@ pub(crate) struct Propagate {
     /// End with the first event
     #[arg(long, requires = "events", help_heading = "Events")]
     stop: bool,
-    /// The exact motion between the attitudes of a file (t, q_w, q_x, q_y, q_z; body to space), in rows of --every from the first to the last, with the error of spherical linear interpolation
+    /// The exact motion between the attitudes of a file (t, q_w, q_x, q_y, q_z; body to space unless its names say otherwise), in rows of --every from the first to the last, with the error of spherical linear interpolation
     #[arg(long, value_name = "POSES", requires = "every", help_heading = "Through attitudes",
           conflicts_with_all = ["omega", "momentum_body", "momentum_space", "attitude", "angles", "rotation", "frame", "to_frame", "periods", "times", "times_column", "until", "start_time", "events", "method", "step", "tolerance"])]
     through: Option<PathBuf>,
