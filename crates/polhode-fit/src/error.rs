@@ -234,7 +234,7 @@ pub enum FitError {
     /// A momentum or an energy is to give the size, and differs between the segments.
     #[error(
         "{quantity} is to give the size of the tensor, as one that is the same in all segments, but that of segment {} is {factor:.3} times \
-         that of segment {}: fit the throw alone to which it belongs, give the trace or the moment about an axis instead, or leave it out for \
+         that of segment {}: fit only the segment that it belongs to, give the trace or the moment about an axis instead, or leave it out for \
          the shape alone",
         largest + 1, smallest + 1
     )]
@@ -258,7 +258,7 @@ pub enum FitError {
     WheelWithTorques,
     /// The moment of a wheel that is to be found would be negative.
     #[error(
-        "the moment of the wheel would be {value:.3e} +- {sigma:.1e} kg m^2, and it is negative by {:.1} of its deviations: reverse the axis of \
+        "the moment of the wheel would be {value:.3e} +- {sigma:.1e} kg m^2, {:.1} standard deviations below zero: reverse the axis of \
          the wheel, or the sign of its speed",
         -*value / *sigma
     )]

@@ -206,7 +206,12 @@ impl Audit {
                     found.bodies.into_iter().filter(|(id, _)| id.as_ref() == Some(wanted)).collect();
                 if chosen.is_empty() && known.is_empty() {
                     let rule = "no column names the bodies of the record";
-                    return Err(Error::input("--id", wanted, rule, "leave it out, or name one by --columns"));
+                    return Err(Error::input(
+                        "--id",
+                        wanted,
+                        rule,
+                        "leave it out, or name the column by --columns id=NAME",
+                    ));
                 }
                 if chosen.is_empty() {
                     return Err(Error::unknown_name(

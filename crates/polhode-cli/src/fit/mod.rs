@@ -327,7 +327,7 @@ impl Fit {
             self.trust_units.then_some("--trust-units"),
         ];
         if let Some(flag) = unused.into_iter().flatten().next() {
-            let rule = "--calibrate-wheel takes the tensor of --body as it is, and checks no units";
+            let rule = "--calibrate-wheel takes the tensor of --body as it is, and does not test the units";
             return Err(Error::input(flag, "", rule, "leave it out"));
         }
         if self.known.body()?.is_some() {

@@ -24,7 +24,7 @@ pub(crate) struct Dump<'t> {
     /// The item that was read last.
     item: Option<String>,
     /// The unit of time, where the dump names its units.
-    unit: Option<TimeUnit>,
+    pub(crate) unit: Option<TimeUnit>,
     /// What the block says before its rows.
     step: Option<String>,
     time: Option<String>,
@@ -91,7 +91,7 @@ impl<'t> Dump<'t> {
                     let text = self.lines.text.trim();
                     let Some((_, unit)) = STYLES.iter().find(|(style, _)| *style == text) else {
                         let refused = self.lines.refused(Rule::KnownUnit(STYLE_NAMES)).value(text);
-                        return Err(refused.with_remedy("write the style of units of the run"));
+                        return Err(refused.with_remedy("write the `units` style of the LAMMPS run"));
                     };
                     self.unit = *unit;
                 }

@@ -286,10 +286,9 @@ impl<'t> Table<'t> {
         })
     }
 
-    /// What a number of this column is in its unit; one of a dump whose times were brought to s is brought to that too.
+    /// What a number of this column is in its unit; one of a dump that names its units is brought to seconds, with its times or without them.
     pub(crate) fn scale(&self, place: usize) -> f64 {
-        let unit = self.source.time_unit().filter(|unit| self.time_unit == Some(*unit));
-        let per_second = unit.map_or(1.0, |unit| 1.0 / unit.seconds(1.0));
+        let per_second = self.source.style_unit().map_or(1.0, |unit| 1.0 / unit.seconds(1.0));
         self.preamble.scale(&self.header.names[place].text) * per_second
     }
 
@@ -381,7 +380,8 @@ impl<'t> Table<'t> {
             None => below,
         };
         let clash = |unit: TimeUnit, flag: String| Err(refused(Rule::OneUnit(unit.to_string(), flag)));
-        match (stated, reading.time_unit, counted) {
+        let of_style = self.source.time_unit().filter(|_| place == 0);
+        match (stated.or(of_style), reading.time_unit, counted) {
             (Some(stated), Some(set), _) if set != stated => return clash(stated, set.to_string()),
             (Some(stated), _, Some(_)) => return clash(stated, "--sample-rate".into()),
             (None, Some(set), Some(_)) => return clash(set, "--sample-rate".into()),

@@ -61,6 +61,14 @@ impl<'t> Source<'t> {
         matches!(self, Self::Dump(_))
     }
 
+    /// The unit of time of a dump that names its units, whether it has times or not.
+    pub(crate) fn style_unit(&self) -> Option<TimeUnit> {
+        match self {
+            Self::Dump(dump) => dump.unit,
+            _ => None,
+        }
+    }
+
     /// The unit of the times of a dump that names its units.
     pub(crate) fn time_unit(&self) -> Option<TimeUnit> {
         match self {

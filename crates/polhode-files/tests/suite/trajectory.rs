@@ -122,13 +122,18 @@ fn dumps_tell_their_time_before_the_step() {
         .replace("c_q[4]\n", "c_q[4] omegax omegay omegaz angmomx angmomy angmomz\n")
         .replace("1 1 0 0 0\n", "1 1 0 0 0 0.25 0 0 0 2 0\n");
     for (style, unit) in [("lj", 1.0), ("real", 1e-15), ("metal", 1e-12), ("micro", 1e-6), ("si", 1.0)] {
-        let found = found(&moving.replace("\nlj\n", &format!("\n{style}\n")), "").unwrap();
+        let moving = moving.replace("\nlj\n", &format!("\n{style}\n"));
+        let untimed = moving.replace("ITEM: TIME\n0\n", "").replace("ITEM: TIME\n0.5\n", "");
+        let (found, untimed) = (found(&moving, "").unwrap(), found(&untimed, "").unwrap());
         let body = &found.bodies[0].1;
         let near = |value: f64, expected: f64| (value / expected - 1.0).abs() < 1e-12;
         assert!(near(body.times[1], 0.5 * unit), "{style}: {:?}", body.times);
         // rates and momenta go with the times
         assert!(near(body.rates.as_ref().unwrap()[1][0], 0.25 / unit), "{style}: {:?}", body.rates);
         assert!(near(body.momentum.as_ref().unwrap()[1][1], 2.0 / unit), "{style}: {:?}", body.momentum);
+        // without times too, where the steps are counted
+        let rates = untimed.bodies[0].1.rates.as_ref().unwrap();
+        assert!(near(rates[1][0], 0.25 / unit), "{style}: {rates:?}");
     }
     let error = found(&text.replace("\nlj\n", "\nreel\n"), "").unwrap_err();
     assert!(error.starts_with(", line 2: 'reel': no unit that is known here; known: lj, real"), "{error}");

@@ -132,7 +132,7 @@ pub enum CarrierError {
     },
     /// The moment of the wheel that is to be found would be negative.
     #[error(
-        "the moment of the wheel would be {inertia:.3e} +- {sigma:.1e} kg m^2, and it is negative by {:.1} of its deviations: reverse the axis \
+        "the moment of the wheel would be {inertia:.3e} +- {sigma:.1e} kg m^2, {:.1} standard deviations below zero: reverse the axis \
          of the wheel, or the sign of its speed",
         -*inertia / *sigma
     )]
