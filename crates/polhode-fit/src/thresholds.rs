@@ -106,6 +106,10 @@ thresholds! {
         FURTHER: f64 = 1.5, "the same of each further coefficient, beyond that", UNMEASURED;
         HOPE: f64 = 0.5, "share of it that the equations without a torque must promise before it is fitted", UNMEASURED;
     }
+    choice: "what the choice of a torque adds to the deviations" {
+        RARE: f64 = 1e-3, "share of answers that the ellipsoid of 99.9 % leaves out", DERIVED;
+        LEAST: f64 = 0.2, "weight of a model that has this share or more: it then lies within that ellipsoid", "a_far_model_lies_within_the_ellipsoid_unless_it_is_refuted";
+    }
     units: "units of rate and time" {
         RADII: usize = 8, "widths of test functions, each twice the one before, at which a record is looked at", UNMEASURED;
         TORQUES: [f64; 6] = [0.1, 1.0, 10.0, 1e2, 1e3, 1e4],

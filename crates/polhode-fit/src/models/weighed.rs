@@ -7,6 +7,7 @@ use crate::models::reading_error::ReadingError;
 use crate::physical::coordinates::{Coordinates, Form};
 use crate::settings::torque::TorqueModel;
 use crate::solve::ladder::threshold;
+use crate::thresholds::choice::{LEAST, RARE};
 use crate::thresholds::warnings::SENSOR;
 
 /// Distance of the tensor of a needle from that of a sphere, shares of the trace: no other body's is larger.
@@ -81,11 +82,18 @@ fn of_bodies(one: &Weighed) -> Option<(Coordinates, Form)> {
     Some((kept * one.x, (covariance + covariance.transpose()) * 0.5))
 }
 
-/// What the choice adds to the covariance of x: of each other model, in proportion to its share, the square of its distance and
-/// what it is less certain of.
+/// What a model of this share weighs: its share, but of more than a thousandth at least so much that the ellipsoid of 99.9 % seldom leaves
+/// it out. By its share alone one of a hundredth would lie outside wherever it is far, or less certain.
+fn weight(share: f64) -> f64 {
+    share.max(LEAST * (share / RARE).min(1.0))
+}
+
+/// What the choice adds to the covariance of x: of each other model, by [`weight`], the square of its distance and what it is less certain
+/// of.
 ///
-/// That is the covariance of the mixture of all models about the chosen one, but for models that are surer than that one:
-/// J. A. Hoeting et al., Statistical Science 14 (1999) 382, equation (3).
+/// With shares in the place of weights that is the covariance of the mixture of all models about the chosen one, but for models that are surer than
+/// that one: J. A. Hoeting et al., Statistical Science 14 (1999) 382, equation (3). A mixture has longer tails than a normal distribution
+/// of its covariance.
 pub(crate) fn spread(models: &[Weighed], chosen: TorqueModel) -> Form {
     let mut sum = Form::zeros();
     let Some(own) = models.iter().find(|one| one.is_torque(chosen)).and_then(of_bodies) else { return sum };
@@ -95,7 +103,7 @@ pub(crate) fn spread(models: &[Weighed], chosen: TorqueModel) -> Form {
         let apart = other.0 - own.0;
         let SymmetricEigen { eigenvectors: v, eigenvalues } = SymmetricEigen::new(other.1 - own.1);
         let wider = v * Form::from_diagonal(&eigenvalues.map(|value| value.max(0.0))) * v.transpose();
-        sum += (wider + apart * apart.transpose()) * share;
+        sum += (wider + apart * apart.transpose()) * weight(share);
     }
     sum
 }
@@ -136,6 +144,25 @@ mod tests {
         let refuted =
             [of(TorqueModel::None, 0.0, 0.0, unit), of(TorqueModel::Drag, gain + 800.0, 1e-3, unit)];
         assert_eq!(spread(&refuted, TorqueModel::Drag), Form::zeros());
+    }
+
+    /// A model of more than a thousandth lies within the ellipsoid of 99.9 % wherever it is, and one that is refuted adds little.
+    #[test]
+    fn a_far_model_lies_within_the_ellipsoid_unless_it_is_refuted() {
+        // chi squared of 5 degrees of freedom that is exceeded with a chance of a thousandth
+        let (far, rare) = (40.0, 20.515);
+        let square = |share: f64| {
+            let score = libm::log(share / (1.0 - share));
+            let models =
+                [of(TorqueModel::None, 0.0, 0.0, 1e-6), of(TorqueModel::Drag, score + 1.0, far * 1e-6, 1e-6)];
+            let sum = Form::identity() * 1e-12 + spread(&models, TorqueModel::None);
+            (far * 1e-6) * (far * 1e-6) / sum[(0, 0)]
+        };
+        for share in [1.1e-3, 0.01, 0.05, 0.3, 0.9] {
+            assert!(square(share) < 0.3 * rare, "{share}: {}", square(share));
+        }
+        assert!(square(1e-6) > rare);
+        assert_eq!([0.0, LEAST, 0.5, 1.0].map(weight), [0.0, LEAST, 0.5, 1.0]);
     }
 
     /// Torque noise that stands in for a torque weighs as much as one coefficient of it.
