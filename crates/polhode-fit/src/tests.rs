@@ -100,6 +100,9 @@ fn warnings_say_their_numbers() {
     says(Warning::CoarseAttitudes { turn: 2.0 }, &["2.00 rad", "4.28 rad"]);
     let halves = Halves { share: 0.25, first: [0.1, 0.4, 0.5], second: [0.2, 0.3, 0.5], chi2: 44.0 };
     says(Warning::Halves(halves), &["first 25 %", "0.1000 : 0.4000", "rest 0.2000", "44 of 5"]);
+    let two = |gain| Warning::TwoTensors { parts: halves, gain };
+    says(two(-2.5), &["lower by 2.5", "first 25 %", "0.1000 : 0.4000 : 0.5000", "0.2000 : 0.3000 : 0.5000"]);
+    says(two(2.5), &["higher by 2.5"]);
     let scatter = Scatter { parts: 8, chi2: 140.0, dof: 35 };
     says(Warning::Scatter(scatter), &["8 parts", "140 of 35", "enlarged by 2.0"]);
     says(

@@ -27,7 +27,7 @@ use crate::report::mirror::{mirror_sigmas, mirrored};
 use crate::report::model::{as_well, models, reading_errors};
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary};
 use crate::report::nuisances::nuisances;
-use crate::report::parts::Scatter;
+use crate::report::parts::{Scatter, instead};
 use crate::report::sensor::Suspect;
 use crate::report::systematic::systematic;
 use crate::report::torque_free::{InvariantTrend, Whiteness, trends};
@@ -196,6 +196,9 @@ impl Facts<'_> {
 
     /// What warnings are drawn from.
     fn grounds<'b>(&'b self, open: Option<&'b Others>, left: Option<(f64, f64)>) -> Grounds<'b> {
+        let found = self.settings.torque == TorqueModel::Auto;
+        let excess = self.variance * self.misfit.max(1.0);
+        let equations = self.chosen.equations.as_ref().filter(|_| found);
         Grounds {
             left,
             record: self.record,
@@ -205,9 +208,10 @@ impl Facts<'_> {
             open,
             suspect: self.suspect,
             as_well: as_well(&self.chosen.models, self.chosen.model),
+            instead: equations.and_then(|equations| instead(equations, self.chosen.model, excess)),
             scatter: self.scatter,
             differing: self.differing,
-            found: self.settings.torque == TorqueModel::Auto,
+            found,
             noise_found: self.settings.torque_noise == TorqueNoise::Fitted,
             driven: self.input.is_some(),
             size: None,

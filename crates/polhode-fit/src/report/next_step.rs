@@ -180,9 +180,10 @@ impl Estimate {
     fn contradiction(&self) -> Option<Contradiction> {
         let of = |warning: &Warning| match warning {
             Warning::LeftOut { what, origin, .. } => Some(Contradiction::LeftOut { what, origin: *origin }),
-            Warning::Halves(_) | Warning::Scatter(_) | Warning::Differing { .. } => {
-                Some(Contradiction::Parts)
-            }
+            Warning::Halves(_)
+            | Warning::Scatter(_)
+            | Warning::Differing { .. }
+            | Warning::TwoTensors { .. } => Some(Contradiction::Parts),
             Warning::Residuals { .. }
             | Warning::AttitudeResiduals { .. }
             | Warning::ConstantTorque { .. }

@@ -124,6 +124,13 @@ pub enum Warning {
         /// Log-likelihood with it less that with the torque.
         gain: f64,
     },
+    /// Two tensors, one of the first segments and one of the rest, explain the record without a torque as well as the torque that was chosen.
+    TwoTensors {
+        /// The tensors, and the share of the equations of the first segments.
+        parts: Halves,
+        /// Log-likelihood with them less that with the torque.
+        gain: f64,
+    },
     /// A constant torque that is no part of the fit would explain the record better.
     ConstantTorque {
         /// Gain of log-likelihood with it, to first order.
@@ -328,6 +335,17 @@ impl fmt::Display for Warning {
                 error.of_size(*size),
                 if *gain < 0.0 { "lower" } else { "higher" },
                 gain.abs()
+            ),
+            Self::TwoTensors { parts: Halves { share, first, second, .. }, gain } => write!(
+                f,
+                "or else the segments have two tensors: without any torque these would explain the record as well as this torque does \
+                 (log-likelihood {} by {:.1}), I1 : I2 : I3 = {} of the first {:.0} % and {} of the rest; make sure that all segments are of \
+                 one body, and that the sensor is fixed to it alike; the deviations leave that out",
+                if *gain < 0.0 { "lower" } else { "higher" },
+                gain.abs(),
+                moments(first),
+                100.0 * share,
+                moments(second)
             ),
             Self::ConstantTorque { gain, turn } => write!(
                 f,

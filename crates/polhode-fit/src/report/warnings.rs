@@ -12,7 +12,7 @@ use crate::poses::free::by_chance;
 use crate::report::attitudes::AttitudeFit;
 use crate::report::differing::Differing;
 use crate::report::estimate::Estimate;
-use crate::report::parts::{Scatter, halves};
+use crate::report::parts::{Halves, Scatter, halves};
 use crate::report::sensor::Suspect;
 use crate::report::torque_free::{InvariantTrend, memory};
 use crate::report::warning::Warning;
@@ -76,6 +76,8 @@ pub(super) struct Grounds<'a> {
     /// The error of the record that explains it without a torque as well as the chosen torque, with its size and its log-likelihood less
     /// that of this.
     pub(super) as_well: Option<(ReadingError, f64, f64)>,
+    /// The two tensors that do so without a torque, and their log-likelihood less that of this.
+    pub(super) instead: Option<(Halves, f64)>,
     /// What the free motion leaves of the samples, of a free body: mean square of a component over that of the noise, and the number of
     /// components.
     pub(super) left: Option<(f64, f64)>,
@@ -144,6 +146,7 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     if found && e.torque.model != TorqueModel::None {
         list.push(Warning::Torque(e.torque.clone()));
         list.extend(grounds.as_well.map(|(error, size, gain)| Warning::AsWell { error, size, gain }));
+        list.extend(grounds.instead.map(|(parts, gain)| Warning::TwoTensors { parts, gain }));
     }
     let density = e.per_segment.iter().map(|s| s.torque_noise).fold(0.0, f64::max);
     if noise_found && density > 0.0 && e.unexplained.is_none_or(|share| share > UNEXPLAINED) {
