@@ -98,6 +98,10 @@ fn warnings_say_their_numbers() {
     says(as_well(-1.5), &["up to 2.5 ms", "lower by 1.5"]);
     says(as_well(1.5), &["higher by 1.5"]);
     says(Warning::CoarseAttitudes { turn: 2.0 }, &["2.00 rad", "4.28 rad"]);
+    let refuted =
+        |unit| Warning::RefutedPrior { what: "offsets", size: 0.05, prior: 1e-3, unit, gain: 120.4 };
+    says(refuted("rad/s"), &["offsets, up to 5.0e-2 rad/s,", "50 times", "of 1.0e-3 rad/s that", "by 120)"]);
+    says(refuted(""), &["up to 5.0e-2,", "of 1.0e-3 that"]);
     let halves = Halves { share: 0.25, first: [0.1, 0.4, 0.5], second: [0.2, 0.3, 0.5], chi2: 44.0 };
     says(Warning::Halves(halves), &["first 25 %", "0.1000 : 0.4000", "rest 0.2000", "44 of 5"]);
     let two = |gain| Warning::TwoTensors { parts: halves, gain };

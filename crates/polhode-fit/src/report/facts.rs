@@ -28,7 +28,7 @@ use crate::report::model::{as_well, models, reading_errors};
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary};
 use crate::report::nuisances::nuisances;
 use crate::report::parts::{Scatter, instead};
-use crate::report::sensor::Suspect;
+use crate::report::sensor::{Suspect, refuted};
 use crate::report::systematic::systematic;
 use crate::report::torque_free::{InvariantTrend, Whiteness, trends};
 use crate::report::warnings::{Grounds, warnings};
@@ -207,6 +207,7 @@ impl Facts<'_> {
             variance: self.variance,
             open,
             suspect: self.suspect,
+            refuted: refuted(&self.chosen.weak, self.stretches, (self.variance, self.rms)),
             as_well: as_well(&self.chosen.models, self.chosen.model),
             instead: equations.and_then(|equations| instead(equations, self.chosen.model, excess)),
             scatter: self.scatter,

@@ -180,6 +180,9 @@ impl Estimate {
     fn contradiction(&self) -> Option<Contradiction> {
         let of = |warning: &Warning| match warning {
             Warning::LeftOut { what, origin, .. } => Some(Contradiction::LeftOut { what, origin: *origin }),
+            Warning::RefutedPrior { what, .. } => {
+                Some(Contradiction::LeftOut { what, origin: Origin::Sensor })
+            }
             Warning::Halves(_)
             | Warning::Scatter(_)
             | Warning::Differing { .. }

@@ -151,6 +151,19 @@ pub enum Warning {
         /// Where it comes from.
         origin: Origin,
     },
+    /// An error of the sensor is larger than the standard deviation that was given for it allows.
+    RefutedPrior {
+        /// What it is, in words.
+        what: &'static str,
+        /// The largest of its components, where its deviation is that of a poor sensor.
+        size: f64,
+        /// The standard deviation that was given.
+        prior: f64,
+        /// The unit of both, empty for a ratio.
+        unit: &'static str,
+        /// Gain of log-likelihood by that other deviation, the torque noise as it was fitted without it.
+        gain: f64,
+    },
     /// Two parts of the record contradict each other.
     Halves(Halves),
     /// The parts of the record scatter by more than their noise; the deviations are enlarged accordingly.
@@ -361,6 +374,17 @@ impl fmt::Display for Warning {
                      the tensor may be off by more than its deviations{}",
                     size.trim_end(),
                     origin.remedy()
+                )
+            }
+            Self::RefutedPrior { what, size, prior, unit, gain } => {
+                let (times, size, prior) =
+                    (size / prior, format!("{size:.1e} {unit}"), format!("{prior:.1e} {unit}"));
+                write!(
+                    f,
+                    "{what}, up to {}, would be {times:.0} times the standard deviation of {} that was given for it, and explain the record \
+                     better (log-likelihood higher by {gain:.0}): the tensor may be off by more than its deviations; give a larger one",
+                    size.trim_end(),
+                    prior.trim_end()
                 )
             }
             Self::Halves(Halves { share, first, second, chi2 }) => write!(

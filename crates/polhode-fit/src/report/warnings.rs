@@ -3,7 +3,7 @@
 use crate::solve::weak_estimate::Convergence;
 use crate::thresholds::noise::DEVIATIONS;
 use crate::thresholds::poses::{DOUBTFUL, MOVING};
-use crate::thresholds::warnings::{APART, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, UNEXPLAINED};
+use crate::thresholds::warnings::{APART, AS_WELL, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, UNEXPLAINED};
 use nalgebra::Vector3;
 use polhode::record::{Record, Segment, Spike};
 
@@ -13,7 +13,7 @@ use crate::report::attitudes::AttitudeFit;
 use crate::report::differing::Differing;
 use crate::report::estimate::Estimate;
 use crate::report::parts::{Halves, Scatter, halves};
-use crate::report::sensor::Suspect;
+use crate::report::sensor::{Refuted, Suspect};
 use crate::report::torque_free::{InvariantTrend, memory};
 use crate::report::warning::Warning;
 use crate::settings::torque::TorqueModel;
@@ -73,6 +73,8 @@ pub(super) struct Grounds<'a> {
     pub(super) open: Option<&'a Others>,
     /// What the fit takes to be zero and would explain the record better.
     pub(super) suspect: Option<&'a Suspect>,
+    /// The error of the sensor that is fitted and larger than its prior allows.
+    pub(super) refuted: Option<Refuted>,
     /// The error of the record that explains it without a torque as well as the chosen torque, with its size and its log-likelihood less
     /// that of this.
     pub(super) as_well: Option<(ReadingError, f64, f64)>,
@@ -142,6 +144,11 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
         let counts = |trend: &InvariantTrend| trend.significant();
         list.extend(e.momentum_trend.filter(counts).map(Warning::MomentumTrend));
         list.extend(e.energy_trend.filter(counts).map(Warning::EnergyTrend));
+    }
+    // nothing else explains more
+    let refuted = grounds.refuted.filter(|own| suspect.is_none_or(|other| own.gain > other.gain - AS_WELL));
+    if let Some(Refuted { what, size, prior, unit, gain }) = refuted {
+        list.push(Warning::RefutedPrior { what, size, prior, unit, gain });
     }
     if found && e.torque.model != TorqueModel::None {
         list.push(Warning::Torque(e.torque.clone()));
