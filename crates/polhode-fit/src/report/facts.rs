@@ -35,6 +35,7 @@ use crate::report::warnings::{Grounds, warnings};
 use crate::settings::Settings;
 use crate::settings::torque::{TorqueModel, TorqueNoise};
 use crate::signal::covariance::{Levels, torque_shape};
+use crate::signal::noise;
 use crate::signal::stretch::Stretch;
 use crate::solve::joint::Joint;
 use crate::solve::ladder::Chosen;
@@ -206,6 +207,7 @@ impl Facts<'_> {
             misfit: self.misfit,
             variance: self.variance,
             open,
+            contradicted: self.contradicted(),
             suspect: self.suspect,
             refuted: refuted(&self.chosen.weak, self.stretches, (self.variance, self.rms)),
             as_well: as_well(&self.chosen.models, self.chosen.model),
@@ -217,6 +219,15 @@ impl Facts<'_> {
             driven: self.input.is_some(),
             size: None,
         }
+    }
+
+    /// The noise that is stated, and the one that the readings show, rad/s, where they contradict each other.
+    fn contradicted(&self) -> Option<(f64, f64)> {
+        let stated = self.settings.noise?;
+        let rounding = self.record.rounding(&self.record.quanta()) / self.rms / self.rms;
+        let left = (self.misfit, self.chosen.weak.dof());
+        let shown = noise::contradicting(self.stretches, self.variance, rounding, left)?;
+        Some((stated, shown.sqrt() * self.rms))
     }
 
     /// The multiplier of a drag per unit of it in 1/s.

@@ -70,6 +70,13 @@ pub enum Warning {
         /// Segments of the record.
         segments: usize,
     },
+    /// The noise that the user states is not that of the readings.
+    StatedNoise {
+        /// Noise of one component as it is stated, rad/s.
+        stated: f64,
+        /// The same as the readings show it, rad/s.
+        shown: f64,
+    },
     /// The residuals exceed the noise.
     Residuals {
         /// Root mean square of the residuals over the noise.
@@ -289,6 +296,11 @@ impl fmt::Display for Warning {
                 let verb = if *short == 1 { "was" } else { "were" };
                 write!(f, "{short} of {segments} segments {verb} left out as too short for the fit")
             }
+            Self::StatedNoise { stated, shown } => write!(
+                f,
+                "the noise is stated as {stated:.2e} rad/s, and the readings show {shown:.2e} rad/s: check its value and its unit, or leave it \
+                 out, so that it is read from the samples"
+            ),
             Self::Residuals { times, noise } => {
                 let times = if *times < 1e4 { format!("{times:.1}") } else { format!("{times:.1e}") };
                 write!(

@@ -71,6 +71,8 @@ pub(super) struct Grounds<'a> {
     pub(super) variance: f64,
     /// Units that explain the record as well.
     pub(super) open: Option<&'a Others>,
+    /// The noise that is stated, and another one that the readings show, rad/s.
+    pub(super) contradicted: Option<(f64, f64)>,
     /// What the fit takes to be zero and would explain the record better.
     pub(super) suspect: Option<&'a Suspect>,
     /// The error of the sensor that is fitted and larger than its prior allows.
@@ -124,6 +126,7 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
         list.push(Warning::ZeroInputs);
     }
     list.extend(of_record(record, &e.spikes, e.segments));
+    list.extend(grounds.contradicted.map(|(stated, shown)| Warning::StatedNoise { stated, shown }));
     if misfit > (1.0 + DEVIATIONS * (2.0 / e.dof.max(1) as f64).sqrt()).max(RESIDUALS) {
         list.push(Warning::Residuals { times: misfit.sqrt(), noise: e.noise_sigma });
     }
