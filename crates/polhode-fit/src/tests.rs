@@ -88,6 +88,7 @@ fn what_is_open_is_said_in_words() {
 fn warnings_say_their_numbers() {
     says(Warning::Residuals { times: 9_999.0, noise: 1e-3 }, &["are 9999.0 times"]);
     says(Warning::Residuals { times: 12_345.0, noise: 1e-3 }, &["are 1.2e4 times"]);
+    says(Warning::StatedNoise { stated: 0.06, shown: 1e-3 }, &["as 6.00e-2 rad/s", "show 1.00e-3 rad/s"]);
     says(Warning::Merged { samples: 1 }, &["1 sample was merged"]);
     says(Warning::Outliers { samples: 2 }, &["2 samples were left out"]);
     says(Warning::Saturated { samples: 1 }, &["1 sample at", "was left out"]);
@@ -98,8 +99,15 @@ fn warnings_say_their_numbers() {
     says(as_well(-1.5), &["up to 2.5 ms", "lower by 1.5"]);
     says(as_well(1.5), &["higher by 1.5"]);
     says(Warning::CoarseAttitudes { turn: 2.0 }, &["2.00 rad", "4.28 rad"]);
+    let refuted =
+        |unit| Warning::RefutedPrior { what: "offsets", size: 0.05, prior: 1e-3, unit, gain: 120.4 };
+    says(refuted("rad/s"), &["offsets, up to 5.0e-2 rad/s,", "50 times", "of 1.0e-3 rad/s that", "by 120)"]);
+    says(refuted(""), &["up to 5.0e-2,", "of 1.0e-3 that"]);
     let halves = Halves { share: 0.25, first: [0.1, 0.4, 0.5], second: [0.2, 0.3, 0.5], chi2: 44.0 };
     says(Warning::Halves(halves), &["first 25 %", "0.1000 : 0.4000", "rest 0.2000", "44 of 5"]);
+    let two = |gain| Warning::TwoTensors { parts: halves, gain };
+    says(two(-2.5), &["lower by 2.5", "first 25 %", "0.1000 : 0.4000 : 0.5000", "0.2000 : 0.3000 : 0.5000"]);
+    says(two(2.5), &["higher by 2.5"]);
     let scatter = Scatter { parts: 8, chi2: 140.0, dof: 35 };
     says(Warning::Scatter(scatter), &["8 parts", "140 of 35", "enlarged by 2.0"]);
     says(

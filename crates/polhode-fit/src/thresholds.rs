@@ -58,6 +58,10 @@ thresholds! {
         MOST: f64 = 0.25,
             "share of the mean square rate that is too much noise to fit", "zero_rates_and_mere_noise_are_no_rotation";
         DEVIATIONS: f64 = 5.0, "standard deviations of the misfit of mere noise that noise explains", DERIVED;
+        STATED: f64 = 2.0,
+            "factor between a noise that is stated and that of the readings which is worth a warning", "a_stated_noise_is_contradicted_where_the_readings_tell_it";
+        WHITE: f64 = 1.5,
+            "factor between the variance of the noise of all samples and of every second one up to which it is white", "a_stated_noise_is_contradicted_where_the_readings_tell_it";
     }
     rounds: "rounds of least squares" {
         ROUNDS: usize = 12, "most rounds at one radius; at low noise two or three do", UNMEASURED;

@@ -142,6 +142,22 @@ impl OfModel {
         Stacked::new(rows, &self.columns, &self.origin, self.deviation)
     }
 
+    /// The segments before and after the border at which two tensors, each with columns of its own, explain them best, and the share of the
+    /// equations before it; `None` of one segment.
+    pub(crate) fn parted(&self) -> Option<(f64, [Stacked; 2])> {
+        let width = self.columns.len() + 6;
+        let small = |segment: &Segment| small_triangle(&segment.rows, width);
+        let small: Vec<Vec<f64>> = self.segments.iter().map(small).collect();
+        let rows: Vec<&[f64]> = small.iter().map(Vec::as_slice).collect();
+        let count = |segments: &[Segment]| segments.iter().map(|segment| segment.equations).sum::<usize>();
+        let at = |k: usize| {
+            let share = count(&self.segments[..k]) as f64 / count(&self.segments) as f64;
+            (share, [self.of_rows(&rows[..k]), self.of_rows(&rows[k..])])
+        };
+        let squares = |parts: &[Stacked; 2]| parts[0].squares + parts[1].squares;
+        (1..rows.len()).map(at).min_by(|a, b| squares(&a.1).total_cmp(&squares(&b.1)))
+    }
+
     /// Mean square of the equations of each segment, over their noise, at what the others say; `None` of one segment.
     pub(crate) fn held_out(&self) -> Option<f64> {
         if self.segments.len() < 2 {

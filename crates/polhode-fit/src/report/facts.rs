@@ -27,14 +27,15 @@ use crate::report::mirror::{mirror_sigmas, mirrored};
 use crate::report::model::{as_well, models, reading_errors};
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary};
 use crate::report::nuisances::nuisances;
-use crate::report::parts::Scatter;
-use crate::report::sensor::Suspect;
+use crate::report::parts::{Scatter, instead};
+use crate::report::sensor::{Suspect, refuted};
 use crate::report::systematic::systematic;
 use crate::report::torque_free::{InvariantTrend, Whiteness, trends};
 use crate::report::warnings::{Grounds, warnings};
 use crate::settings::Settings;
 use crate::settings::torque::{TorqueModel, TorqueNoise};
 use crate::signal::covariance::{Levels, torque_shape};
+use crate::signal::noise;
 use crate::signal::stretch::Stretch;
 use crate::solve::joint::Joint;
 use crate::solve::ladder::Chosen;
@@ -196,6 +197,9 @@ impl Facts<'_> {
 
     /// What warnings are drawn from.
     fn grounds<'b>(&'b self, open: Option<&'b Others>, left: Option<(f64, f64)>) -> Grounds<'b> {
+        let found = self.settings.torque == TorqueModel::Auto;
+        let excess = self.variance * self.misfit.max(1.0);
+        let equations = self.chosen.equations.as_ref().filter(|_| found);
         Grounds {
             left,
             record: self.record,
@@ -203,15 +207,27 @@ impl Facts<'_> {
             misfit: self.misfit,
             variance: self.variance,
             open,
+            contradicted: self.contradicted(),
             suspect: self.suspect,
+            refuted: refuted(&self.chosen.weak, self.stretches, (self.variance, self.rms)),
             as_well: as_well(&self.chosen.models, self.chosen.model),
+            instead: equations.and_then(|equations| instead(equations, self.chosen.model, excess)),
             scatter: self.scatter,
             differing: self.differing,
-            found: self.settings.torque == TorqueModel::Auto,
+            found,
             noise_found: self.settings.torque_noise == TorqueNoise::Fitted,
             driven: self.input.is_some(),
             size: None,
         }
+    }
+
+    /// The noise that is stated, and the one that the readings show, rad/s, where they contradict each other.
+    fn contradicted(&self) -> Option<(f64, f64)> {
+        let stated = self.settings.noise?;
+        let rounding = self.record.rounding(&self.record.quanta()) / self.rms / self.rms;
+        let left = (self.misfit, self.chosen.weak.dof());
+        let shown = noise::contradicting(self.stretches, self.variance, rounding, left)?;
+        Some((stated, shown.sqrt() * self.rms))
     }
 
     /// The multiplier of a drag per unit of it in 1/s.

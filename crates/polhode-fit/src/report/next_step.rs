@@ -180,9 +180,13 @@ impl Estimate {
     fn contradiction(&self) -> Option<Contradiction> {
         let of = |warning: &Warning| match warning {
             Warning::LeftOut { what, origin, .. } => Some(Contradiction::LeftOut { what, origin: *origin }),
-            Warning::Halves(_) | Warning::Scatter(_) | Warning::Differing { .. } => {
-                Some(Contradiction::Parts)
+            Warning::RefutedPrior { what, .. } => {
+                Some(Contradiction::LeftOut { what, origin: Origin::Sensor })
             }
+            Warning::Halves(_)
+            | Warning::Scatter(_)
+            | Warning::Differing { .. }
+            | Warning::TwoTensors { .. } => Some(Contradiction::Parts),
             Warning::Residuals { .. }
             | Warning::AttitudeResiduals { .. }
             | Warning::ConstantTorque { .. }

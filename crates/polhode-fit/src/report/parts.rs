@@ -1,10 +1,15 @@
 //! Whether the parts of a record have the same tensor: both sides of a cut, and all parts of equal length.
 
+use crate::columns::sets::torque_columns;
+use crate::models::equations::Equations;
 use crate::physical::coordinates::{Coordinates, Form, eigen, tensor};
+use crate::physical::law::LARGEST_SHARE;
+use crate::settings::torque::TorqueModel;
 use crate::solve::stacked::Stacked;
 use crate::solve::weak_estimate::WeakEstimate;
+use crate::thresholds::rounds::BEYOND;
 use crate::thresholds::stacked::ITERATIONS;
-use crate::thresholds::warnings::{CUTS, HALVES, OPEN, SCATTERED};
+use crate::thresholds::warnings::{AS_WELL, CUTS, HALVES, OPEN, SCATTERED};
 
 /// Two tensors of one record that contradict each other, cut where they do so most.
 #[non_exhaustive]
@@ -25,6 +30,29 @@ pub struct Halves {
 pub(crate) fn halves(weak: &WeakEstimate, variance: f64) -> Option<Halves> {
     let each = (1..CUTS).filter_map(|k| parts(weak, variance, k as f64 / CUTS as f64));
     each.max_by(|a, b| a.chi2.total_cmp(&b.chi2)).filter(|most| most.chi2 > HALVES)
+}
+
+/// The tensors of the segments before a border and of those after it, where these without a torque explain the record as well as a torque along
+/// three axes, each by its log-likelihood less one for every unknown; and their log-likelihood less that of the torque. `variance` as above.
+///
+/// Both are by the equations of one estimate, to first order. Parts that leave the tensor open, or tell one of no body, explain nothing.
+pub(crate) fn instead(equations: &Equations, torque: TorqueModel, variance: f64) -> Option<(Halves, f64)> {
+    if !matches!(torque, TorqueModel::Constant | TorqueModel::Drag3) {
+        return None;
+    }
+    let none = equations.of(TorqueModel::None);
+    let (share, parts) = none.parted()?;
+    let apart: f64 = parts.iter().map(|part| part.squares).sum();
+    let chi2 = (none.stacked().squares - apart) / variance;
+    let gain = 0.5 * (equations.of(torque).stacked().squares - apart) / variance;
+    // a second tensor, with columns of its own
+    let more = (5 + parts[0].own.nrows()) as f64 - torque_columns(torque).len() as f64;
+    let of = |part: &Stacked| Some(eigen(tensor(&part.minimiser()?.x)).0.into());
+    let (first, second): ([f64; 3], [f64; 3]) = (of(&parts[0])?, of(&parts[1])?);
+    let is_of_body = |moments: &[f64; 3]| moments[0] > 0.0 && moments[2] - LARGEST_SHARE <= BEYOND;
+    let is_likely = chi2 > HALVES && gain - more > -AS_WELL;
+    let are_bodies = is_of_body(&first) && is_of_body(&second);
+    (is_likely && are_bodies).then_some((Halves { share, first, second, chi2 }, gain))
 }
 
 /// The tensors of the parts of a record, each by itself, contradict each other.

@@ -2,17 +2,18 @@
 
 use crate::columns::column::{Column, Unknowns, terms_of_all};
 use crate::columns::rotor::Rotor;
+use crate::columns::scale::Scale;
 use crate::columns::sets::{magnet_columns, told_components, walk_columns};
 use crate::models::equations::Equations;
 use crate::models::reading_error::{ReadingError, Units};
 use crate::physical::coordinates::tensor;
 use crate::report::next_step::Origin;
-use crate::report::parts::quantile;
+use crate::report::parts::{quantile, rows_between};
 use crate::report::systematic::momentum;
 use crate::signal::stretch::Stretch;
 use crate::solve::stacked::Stacked;
 use crate::solve::weak_estimate::WeakEstimate;
-use crate::thresholds::errors::{LARGEST_MAGNET, RANDOM_WALK, WALK_STEPS};
+use crate::thresholds::errors::{LARGEST, LARGEST_MAGNET, RANDOM_WALK, WALK_STEPS};
 use crate::thresholds::warnings::{LEFT_OUT, SENSOR};
 
 /// Errors or torques of one kind that would explain a record better.
@@ -105,6 +106,65 @@ pub(crate) fn suspect(
     });
     // more unknowns explain more in any case
     each.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, suspect)| suspect)
+}
+
+/// An error of the sensor that is larger than the deviation of its prior allows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Refuted {
+    /// What it is, in words.
+    pub(crate) what: &'static str,
+    /// The largest of its components, with a plausible deviation.
+    pub(crate) size: f64,
+    /// The deviation that was given for it.
+    pub(crate) prior: f64,
+    /// The unit of both, empty for a ratio.
+    pub(crate) unit: &'static str,
+    /// Gain of log-likelihood by the plausible deviation, the torque noise as it was fitted without it.
+    pub(crate) gain: f64,
+}
+
+/// Of the errors of the sensor that are fitted, the one that explains most with the deviation that is plausible for it in the place of a smaller
+/// one that was given, where that is more than chance brings.
+pub(crate) fn refuted(
+    weak: &WeakEstimate,
+    stretches: &[Stretch],
+    (variance, rms): (f64, f64),
+) -> Option<Refuted> {
+    let origin = &weak.stacked.as_ref()?.origin;
+    // torques have no prior
+    weak.columns.iter().find(|column| column.prior.is_some())?;
+    let rows = rows_between(weak, [0.0, 1.0]);
+    let solved = |columns: &[Column]| Stacked::new(&rows, columns, origin, variance.sqrt());
+    let given = solved(&weak.columns);
+    let units = Units { rms, input: terms_of_all(&weak.columns, &weak.at).input };
+    let of = |error: ReadingError| (error.in_words(), error.columns(stretches, units));
+    let all = [
+        of(ReadingError::Offsets),
+        ("an error of scale of the sensor", vec![Column::new(Scale, Some(LARGEST))]),
+        of(ReadingError::AxisScales),
+        of(ReadingError::Misalignment),
+        of(ReadingError::Delays),
+    ];
+    let each = all.into_iter().filter_map(|(what, plausible)| {
+        let wider = |own: &Column| {
+            let other = plausible.iter().find(|other| other.is_alike(own))?;
+            other.prior.zip(own.prior).is_some_and(|(other, own)| other > own).then_some(*other)
+        };
+        let columns: Vec<Column> = weak.columns.iter().map(|own| wider(own).unwrap_or(*own)).collect();
+        let places: Vec<usize> = (0..columns.len()).filter(|&k| wider(&weak.columns[k]).is_some()).collect();
+        let own = weak.columns[*places.first()?];
+        let free = solved(&columns);
+        let at = free.minimiser()?;
+        let gain = 0.5 * (given.squares - free.squares) / variance;
+        let by_chance = 0.5 * quantile(places.len() as f64, LEFT_OUT);
+        let least = if weak.has_torque_noise() { by_chance.max(SENSOR) } else { by_chance };
+        let (label, unit) = (own.label(), own.label().factor(rms));
+        let size = places.iter().fold(0.0, |largest: f64, &k| largest.max(at.c[k].abs())) * unit;
+        let refuted = Refuted { what, size, prior: own.prior? * unit, unit: label.unit, gain };
+        // what neither of them explains counts as noise
+        (gain > least * free.excess(variance)).then_some(refuted)
+    });
+    each.max_by(|a, b| a.gain.total_cmp(&b.gain))
 }
 
 /// Gain of log-likelihood by an error of one component of the momentum of wheels, the torque noise as it was fitted without it.

@@ -5,17 +5,20 @@ use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode::record::Record;
 
-use crate::estimator::fit;
+use crate::estimator::{fit, fitted};
+use crate::models::equations::Equations;
 use crate::physical::coordinates::{Coordinates, Form, coordinates, eigen, tensor};
 use crate::report::answer::{Answer, ratios_of, sigmas};
 use crate::report::attitudes::AttitudeFit;
 use crate::report::estimate::{Estimate, Residuals};
 use crate::report::identifiability::{Identifiability, Undetermined};
+use crate::report::parts::{Halves, instead};
 use crate::report::torque_free::{InvariantTrend, Whiteness, memory, trends};
 use crate::report::warning::Warning;
 use crate::report::warnings::{Doubts, of_answer, of_likelihood, of_smoothed};
 use crate::settings::Settings;
-use crate::settings::torque::TorqueModel;
+use crate::settings::torque::{TorqueModel, TorqueNoise};
+use crate::signal::normalised::{Normalised, normalised};
 use crate::signal::stretch::Stretch;
 use crate::simulate::{Disturbances, Gyroscope, simulate_with};
 use crate::thresholds::poses::DOUBTFUL;
@@ -61,6 +64,48 @@ fn trends_of_momentum_and_energy_are_those_of_the_drag() {
     let (momentum, _) =
         trends(&[Stretch::new(times, rates)], Clone::clone, &body(), 1e-6, |_| Matrix3::zeros());
     assert!(!momentum.significant() && momentum.rate == 0.0, "two samples have no trend");
+}
+
+/// Two bodies in two segments explain a record as well as a constant torque; where that torque acts on one body, or none does, they do not.
+#[test]
+fn two_bodies_explain_a_record_as_well_as_a_torque() {
+    let times: Vec<f64> = (0..600).map(|k| 0.05 * f64::from(k)).collect();
+    let sigma = 2e-3;
+    let torque = Vector3::new(12e-3, -6e-3, 18e-3);
+    for (moment, torque, model) in [
+        (2.62, Vector3::zeros(), TorqueModel::None),
+        (2.6, torque, TorqueModel::Constant),
+        (2.6, Vector3::zeros(), TorqueModel::None),
+    ] {
+        let mut random = Random::new(41);
+        let gyroscope = Gyroscope::default().with_noise(sigma);
+        let by = Disturbances::default().with_torque(torque);
+        let mut toss = |largest: f64, start: Vector3<f64>| {
+            let body = Inertia::from_moments([1.0, 2.0, largest]).unwrap();
+            let rates = simulate_with(&body, start, &times, &by, &gyroscope, &mut random).unwrap();
+            Record::from_samples(&times, &rates).unwrap()
+        };
+        let first = toss(2.6, Vector3::new(0.5, 0.8, -0.4));
+        let record = first.join(toss(moment, Vector3::new(-0.7, 0.3, 0.6)));
+        let settings = Settings::default().with_noise(sigma).with_torque(model);
+        let settings = settings.with_torque_noise(TorqueNoise::None).with_check_units(false);
+        let drawn = fitted(&record, &settings).unwrap().drawn.unwrap();
+        let Normalised { stretches, rms, .. } = normalised(&record).unwrap();
+        let variance = (sigma / rms) * (sigma / rms);
+        let equations = Equations::new(&stretches, &drawn.weak, &[], &[], variance).unwrap();
+        let found = instead(&equations, TorqueModel::Constant, variance);
+        assert_eq!(found.is_some(), moment != 2.6, "{found:?}");
+        // a drag has one coefficient, and is not asked
+        assert_eq!(instead(&equations, TorqueModel::Drag, variance), None);
+        let Some((Halves { share, first, second, chi2 }, gain)) = found else { continue };
+        assert!((share - 0.5).abs() < 1e-12 && chi2 > 50.0 && gain > -1.0, "{share} {chi2} {gain}");
+        for (found, largest) in [(first, 2.6), (second, moment)] {
+            let trace = 3.0 + largest;
+            for (found, truth) in found.into_iter().zip([1.0 / trace, 2.0 / trace, largest / trace]) {
+                assert!((found - truth).abs() < 5e-4, "{found} {truth}");
+            }
+        }
+    }
 }
 
 fn residuals(values: Vec<[f64; 3]>) -> Residuals {

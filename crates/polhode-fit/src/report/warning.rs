@@ -70,6 +70,13 @@ pub enum Warning {
         /// Segments of the record.
         segments: usize,
     },
+    /// The noise that the user states is not that of the readings.
+    StatedNoise {
+        /// Noise of one component as it is stated, rad/s.
+        stated: f64,
+        /// The same as the readings show it, rad/s.
+        shown: f64,
+    },
     /// The residuals exceed the noise.
     Residuals {
         /// Root mean square of the residuals over the noise.
@@ -124,6 +131,13 @@ pub enum Warning {
         /// Log-likelihood with it less that with the torque.
         gain: f64,
     },
+    /// Two tensors, one of the first segments and one of the rest, explain the record without a torque as well as the torque that was chosen.
+    TwoTensors {
+        /// The tensors, and the share of the equations of the first segments.
+        parts: Halves,
+        /// Log-likelihood with them less that with the torque.
+        gain: f64,
+    },
     /// A constant torque that is no part of the fit would explain the record better.
     ConstantTorque {
         /// Gain of log-likelihood with it, to first order.
@@ -143,6 +157,19 @@ pub enum Warning {
         gain: f64,
         /// Where it comes from.
         origin: Origin,
+    },
+    /// An error of the sensor is larger than the standard deviation that was given for it allows.
+    RefutedPrior {
+        /// What it is, in words.
+        what: &'static str,
+        /// The largest of its components, where its deviation is that of a poor sensor.
+        size: f64,
+        /// The standard deviation that was given.
+        prior: f64,
+        /// The unit of both, empty for a ratio.
+        unit: &'static str,
+        /// Gain of log-likelihood by that other deviation, the torque noise as it was fitted without it.
+        gain: f64,
     },
     /// Two parts of the record contradict each other.
     Halves(Halves),
@@ -269,6 +296,11 @@ impl fmt::Display for Warning {
                 let verb = if *short == 1 { "was" } else { "were" };
                 write!(f, "{short} of {segments} segments {verb} left out as too short for the fit")
             }
+            Self::StatedNoise { stated, shown } => write!(
+                f,
+                "the noise is stated as {stated:.2e} rad/s, and the readings show {shown:.2e} rad/s: check its value and its unit, or leave it \
+                 out, so that it is read from the samples"
+            ),
             Self::Residuals { times, noise } => {
                 let times = if *times < 1e4 { format!("{times:.1}") } else { format!("{times:.1e}") };
                 write!(
@@ -329,6 +361,17 @@ impl fmt::Display for Warning {
                 if *gain < 0.0 { "lower" } else { "higher" },
                 gain.abs()
             ),
+            Self::TwoTensors { parts: Halves { share, first, second, .. }, gain } => write!(
+                f,
+                "or else the segments have two tensors: without any torque these would explain the record as well as this torque does \
+                 (log-likelihood {} by {:.1}), I1 : I2 : I3 = {} of the first {:.0} % and {} of the rest; make sure that all segments are of \
+                 one body, and that the sensor is fixed to it alike; the deviations leave that out",
+                if *gain < 0.0 { "lower" } else { "higher" },
+                gain.abs(),
+                moments(first),
+                100.0 * share,
+                moments(second)
+            ),
             Self::ConstantTorque { gain, turn } => write!(
                 f,
                 "a constant torque, which is no part of the fit, would explain the record better (log-likelihood higher by {gain:.1}); it would \
@@ -343,6 +386,17 @@ impl fmt::Display for Warning {
                      the tensor may be off by more than its deviations{}",
                     size.trim_end(),
                     origin.remedy()
+                )
+            }
+            Self::RefutedPrior { what, size, prior, unit, gain } => {
+                let (times, size, prior) =
+                    (size / prior, format!("{size:.1e} {unit}"), format!("{prior:.1e} {unit}"));
+                write!(
+                    f,
+                    "{what}, up to {}, would be {times:.0} times the standard deviation of {} that was given for it, and explain the record \
+                     better (log-likelihood higher by {gain:.0}): the tensor may be off by more than its deviations; give a larger one",
+                    size.trim_end(),
+                    prior.trim_end()
                 )
             }
             Self::Halves(Halves { share, first, second, chi2 }) => write!(

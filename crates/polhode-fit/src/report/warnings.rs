@@ -3,7 +3,7 @@
 use crate::solve::weak_estimate::Convergence;
 use crate::thresholds::noise::DEVIATIONS;
 use crate::thresholds::poses::{DOUBTFUL, MOVING};
-use crate::thresholds::warnings::{APART, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, UNEXPLAINED};
+use crate::thresholds::warnings::{APART, AS_WELL, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, UNEXPLAINED};
 use nalgebra::Vector3;
 use polhode::record::{Record, Segment, Spike};
 
@@ -12,8 +12,8 @@ use crate::poses::free::by_chance;
 use crate::report::attitudes::AttitudeFit;
 use crate::report::differing::Differing;
 use crate::report::estimate::Estimate;
-use crate::report::parts::{Scatter, halves};
-use crate::report::sensor::Suspect;
+use crate::report::parts::{Halves, Scatter, halves};
+use crate::report::sensor::{Refuted, Suspect};
 use crate::report::torque_free::{InvariantTrend, memory};
 use crate::report::warning::Warning;
 use crate::settings::torque::TorqueModel;
@@ -71,11 +71,17 @@ pub(super) struct Grounds<'a> {
     pub(super) variance: f64,
     /// Units that explain the record as well.
     pub(super) open: Option<&'a Others>,
+    /// The noise that is stated, and another one that the readings show, rad/s.
+    pub(super) contradicted: Option<(f64, f64)>,
     /// What the fit takes to be zero and would explain the record better.
     pub(super) suspect: Option<&'a Suspect>,
+    /// The error of the sensor that is fitted and larger than its prior allows.
+    pub(super) refuted: Option<Refuted>,
     /// The error of the record that explains it without a torque as well as the chosen torque, with its size and its log-likelihood less
     /// that of this.
     pub(super) as_well: Option<(ReadingError, f64, f64)>,
+    /// The two tensors that do so without a torque, and their log-likelihood less that of this.
+    pub(super) instead: Option<(Halves, f64)>,
     /// What the free motion leaves of the samples, of a free body: mean square of a component over that of the noise, and the number of
     /// components.
     pub(super) left: Option<(f64, f64)>,
@@ -120,6 +126,7 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
         list.push(Warning::ZeroInputs);
     }
     list.extend(of_record(record, &e.spikes, e.segments));
+    list.extend(grounds.contradicted.map(|(stated, shown)| Warning::StatedNoise { stated, shown }));
     if misfit > (1.0 + DEVIATIONS * (2.0 / e.dof.max(1) as f64).sqrt()).max(RESIDUALS) {
         list.push(Warning::Residuals { times: misfit.sqrt(), noise: e.noise_sigma });
     }
@@ -141,9 +148,15 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
         list.extend(e.momentum_trend.filter(counts).map(Warning::MomentumTrend));
         list.extend(e.energy_trend.filter(counts).map(Warning::EnergyTrend));
     }
+    // nothing else explains more
+    let refuted = grounds.refuted.filter(|own| suspect.is_none_or(|other| own.gain > other.gain - AS_WELL));
+    if let Some(Refuted { what, size, prior, unit, gain }) = refuted {
+        list.push(Warning::RefutedPrior { what, size, prior, unit, gain });
+    }
     if found && e.torque.model != TorqueModel::None {
         list.push(Warning::Torque(e.torque.clone()));
         list.extend(grounds.as_well.map(|(error, size, gain)| Warning::AsWell { error, size, gain }));
+        list.extend(grounds.instead.map(|(parts, gain)| Warning::TwoTensors { parts, gain }));
     }
     let density = e.per_segment.iter().map(|s| s.torque_noise).fold(0.0, f64::max);
     if noise_found && density > 0.0 && e.unexplained.is_none_or(|share| share > UNEXPLAINED) {

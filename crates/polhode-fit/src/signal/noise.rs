@@ -1,7 +1,7 @@
 //! The noise of a sensor from its own samples.
 
 use crate::signal::stretch::Stretch;
-use crate::thresholds::noise::OUTLYING;
+use crate::thresholds::noise::{DEVIATIONS, OUTLYING, STATED, WHITE};
 
 /// Variance of one component, from what local cubics leave of five neighbouring samples.
 ///
@@ -32,4 +32,38 @@ pub(crate) fn variance(stretches: &[Stretch]) -> f64 {
         count += 1.0;
     }
     if count > 0.0 { sum / count } else { 0.0 }
+}
+
+/// That variance of noise that is white, so that every second sample shows the same. Of a motion whose samples are far apart, and of a sensor
+/// that filters, they show more.
+fn white(stretches: &[Stretch]) -> Option<f64> {
+    let second = |s: &Stretch| Stretch {
+        times: s.times.iter().step_by(2).copied().collect(),
+        rates: s.rates.iter().step_by(2).copied().collect(),
+        weights: Vec::new(),
+        inputs: None,
+        ..*s
+    };
+    let halved: Vec<Stretch> = stretches.iter().map(second).collect();
+    let (all, half) = (variance(stretches), variance(&halved));
+    (all > 0.0 && half < WHITE * all && all < WHITE * half).then_some(all)
+}
+
+/// The variance that the samples show, where it surely is another than the `stated` one. `rounding` is that of the readings, and `misfit` the
+/// mean square of so many residuals over the stated variance.
+///
+/// Neighbours show nothing of slow noise, and little of the rounding of readings that rest on a step; residuals do.
+pub(crate) fn contradicting(
+    stretches: &[Stretch],
+    stated: f64,
+    rounding: f64,
+    (misfit, residuals): (f64, usize),
+) -> Option<f64> {
+    let shown = white(stretches)?;
+    let chance = |numbers: usize| 1.0 + 2.0 * DEVIATIONS * (2.0 / numbers.max(1) as f64).sqrt();
+    let samples: usize = stretches.iter().map(|s| s.times.len()).sum();
+    let most = STATED * STATED * chance(3 * samples);
+    let is_more = shown > most * (stated + rounding);
+    let is_less = most * shown.max(rounding) < stated && STATED * STATED * chance(residuals) * misfit < 1.0;
+    (is_more || is_less).then_some(shown)
 }

@@ -9,7 +9,7 @@ use crate::columns::walk::Walk;
 use crate::physical::coordinates::{Coordinates, tensor};
 use crate::signal::covariance::{Covariance, Levels};
 use crate::signal::moments::{Moments, group, ranges};
-use crate::signal::noise::variance;
+use crate::signal::noise::{contradicting, variance};
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::Terms;
 use crate::signal::test_functions::{Seen, TestFunctions};
@@ -117,6 +117,46 @@ fn the_noise_is_what_cubics_leave() {
     noisy[1000] += Vector3::new(1e3, 0.0, 0.0);
     assert!((read(noisy) / found - 1.0).abs() < 0.02);
     assert_eq!(variance(&[Stretch::new(vec![0.0, 1.0, 2.0, 3.0], vec![Vector3::x(); 4])]), 0.0);
+}
+
+/// Readings whose noise is white contradict another one that is stated. Where the motion is fast, the sensor filters, or rounding or residuals
+/// are as large as what is stated, it stays open.
+#[test]
+fn a_stated_noise_is_contradicted_where_the_readings_tell_it() {
+    let (count, sigma) = (2000, 0.01);
+    let mut random = Random::new(12);
+    let noise: Vec<Vector3<f64>> = (0..count).map(|_| random.normal_vector() * sigma).collect();
+    // a filter keeps a share of the noise before
+    let read = |turn: f64, kept: f64| {
+        let (mut times, mut rates, mut last) = (Vec::new(), Vec::new(), Vector3::<f64>::zeros());
+        for (k, own) in noise.iter().enumerate() {
+            let phase = turn * k as f64;
+            last = last * kept + own;
+            times.push(k as f64);
+            rates.push(Vector3::new(libm::sin(phase), libm::cos(phase), 0.3) + last);
+        }
+        [Stretch::new(times, rates)]
+    };
+    let said = |of: &[Stretch], times: f64, rounding: f64, misfit: f64| {
+        contradicting(of, sigma * sigma * times * times, rounding, (misfit, 300))
+    };
+    let slow = read(0.02, 0.0);
+    for times in [60.0, 5.0, 0.2, 1.0 / 60.0] {
+        let found = said(&slow, times, 0.0, 1.0 / (times * times)).unwrap();
+        assert!((found / (sigma * sigma) - 1.0).abs() < 0.25, "{times}: {found}");
+    }
+    for times in [1.5, 1.0, 1.0 / 1.5] {
+        assert_eq!(said(&slow, times, 0.0, 1.0 / (times * times)), None, "{times}");
+    }
+    // residuals of the stated size, and steps of that size or of that of the noise
+    assert_eq!(said(&slow, 60.0, 0.0, 1.0), None);
+    assert_eq!(said(&slow, 60.0, sigma * sigma * 3600.0, 1.0 / 3600.0), None);
+    assert_eq!(said(&slow, 1.0 / 60.0, sigma * sigma, 3600.0), None);
+    for other in [read(0.5, 0.0), read(0.02, 0.9)] {
+        for times in [60.0, 1.0 / 60.0] {
+            assert_eq!(said(&other, times, 0.0, 1.0 / (times * times)), None, "{times}");
+        }
+    }
 }
 
 /// Halves of a long stretch that are summed side by side are the whole: sums, covariance and columns beside plain sums over all samples.

@@ -90,6 +90,29 @@ fn a_sensor_that_stands_still_is_named() {
     assert_eq!(e.warnings, [Warning::Stale { samples: 8 }]);
 }
 
+/// A noise that is stated is named where the readings show another one; the right one is not, of readings in steps neither.
+#[test]
+fn a_stated_noise_that_is_not_that_of_the_readings_is_named() {
+    let body = Inertia::from_moments(SHAPE).unwrap();
+    let fine = Gyroscope::default().with_noise(1e-3);
+    let coarse = fine.clone().with_quantum(5e-3);
+    let none = Disturbances::default();
+    let (times, omega) = (sampled(50, 30), Vector3::new(0.3, 1.0, 0.4));
+    for (gyroscope, stated, is_named) in [(&fine, 1e-2, true), (&fine, 1e-3, false), (&coarse, 2e-3, false)] {
+        let rates = simulate_with(&body, omega, &times, &none, gyroscope, &mut Random::new(647)).unwrap();
+        let settings = Settings::default().with_noise(stated);
+        let e = fit(&Record::from_samples(&times, &rates).unwrap(), &settings).unwrap();
+        let found = e.warnings.iter().find_map(|warning| match warning {
+            Warning::StatedNoise { stated, shown } => Some((*stated, *shown)),
+            _ => None,
+        });
+        assert_eq!(found.is_some(), is_named, "{stated}: {:?}", e.warnings);
+        if let Some((given, shown)) = found {
+            assert!(given == stated && (shown / 1e-3 - 1.0).abs() < 0.1, "{given} {shown}");
+        }
+    }
+}
+
 /// Torque noise lets |J ω| and ω·J ω walk: their trends scatter as their deviations say.
 #[test]
 fn drifts_under_torque_noise_are_no_surer_than_the_walk_allows() {

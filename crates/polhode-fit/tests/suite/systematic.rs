@@ -4,8 +4,8 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_fit::{
-    Disturbances, Estimate, Gyroscope, Record, SensorPriors, Settings, TorqueModel, TorqueNoise, fit,
-    simulate_with,
+    Disturbances, Estimate, Gyroscope, Record, SensorPriors, Settings, TorqueModel, TorqueNoise, Warning,
+    fit, simulate_with,
 };
 
 use crate::measured::{sampled, turned};
@@ -165,5 +165,30 @@ fn an_axis_that_is_read_late_has_a_negative_delay() {
     for (name, delay) in [("skew_y", -0.02), ("skew_z", 0.01)] {
         let found = e.nuisances.iter().find(|one| one.name == name).unwrap();
         assert!((found.value - delay).abs() < 0.005 && found.sigma < 0.005, "{name}: {found:?}");
+    }
+}
+
+/// Offsets of twenty times the deviation that is given for them are named with both; those within it are not.
+#[test]
+fn offsets_that_their_prior_does_not_allow_are_named() {
+    let (times, body) = (sampled(25, 30), Inertia::from_tensor(body()).unwrap());
+    let gyroscope = Gyroscope::default().with_offset(Vector3::new(0.02, -0.02, 0.02));
+    let none = Disturbances::default();
+    let rates = simulate_with(&body, START, &times, &none, &gyroscope, &mut Random::new(6)).unwrap();
+    let record = Record::from_samples(&times, &rates).unwrap();
+    for given in [1e-3, 0.05] {
+        let settings = settings().with_sensor(SensorPriors::default().with_offset(given));
+        let e = fit(&record, &settings).unwrap();
+        let found = e.warnings.iter().find_map(|warning| match warning {
+            Warning::RefutedPrior { what, size, prior, .. } => Some((*what, *size, *prior)),
+            _ => None,
+        });
+        assert_eq!(found.is_some(), given < 0.02, "{:?}", e.warnings);
+        let Some((what, size, prior)) = found else { continue };
+        assert_eq!(what, "offsets of the sensor");
+        assert!((size / 0.02 - 1.0).abs() < 0.3 && (prior / given - 1.0).abs() < 1e-9, "{size} {prior}");
+        let suspects = |w: &Warning| matches!(w, Warning::RefutedPrior { .. } | Warning::LeftOut { .. });
+        let first = e.warnings.iter().find(|warning| suspects(warning)).unwrap();
+        assert!(matches!(first, Warning::RefutedPrior { .. }), "{first}");
     }
 }
