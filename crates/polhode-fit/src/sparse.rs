@@ -100,10 +100,12 @@ fn explained(record: &Record, settings: &Settings) -> Option<Estimate> {
         models,
         alternatives,
         moving: None,
+        misread: None,
         read: Read {
             unit,
             used: long.iter().map(|(k, s)| (*k, middle(s))).collect(),
             local_noise: None,
+            rate_noise: None,
             largest_turn: 0.0,
             jumps: 0,
             has_rates: true,

@@ -103,6 +103,14 @@ fn warnings_say_their_numbers() {
         |unit| Warning::RefutedPrior { what: "offsets", size: 0.05, prior: 1e-3, unit, gain: 120.4 };
     says(refuted("rad/s"), &["offsets, up to 5.0e-2 rad/s,", "50 times", "of 1.0e-3 rad/s that", "by 120)"]);
     says(refuted(""), &["up to 5.0e-2,", "of 1.0e-3 that"]);
+    let offset = |is_fitted| Warning::RateOffset { size: 0.02, gain: 225.4, is_fitted };
+    says(offset(true), &["offset of the rates of 2.0e-2 rad/s", "higher by 225)", "takes it out"]);
+    says(offset(false), &["no part of the fit"]);
+    says(
+        Warning::RateScale { scale: -0.05, gain: 60.0, is_fitted: true },
+        &["scale of the rates of -5.00 %", "higher by 60)", "takes it out"],
+    );
+    says(Warning::RateResiduals { times: 1.43, noise: 0.02 }, &["leaves 1.4 times", "2.00e-2 rad/s"]);
     let halves = Halves { share: 0.25, first: [0.1, 0.4, 0.5], second: [0.2, 0.3, 0.5], chi2: 44.0 };
     says(Warning::Halves(halves), &["first 25 %", "0.1000 : 0.4000", "rest 0.2000", "44 of 5"]);
     let two = |gain| Warning::TwoTensors { parts: halves, gain };

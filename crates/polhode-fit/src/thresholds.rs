@@ -403,6 +403,7 @@ thresholds! {
         TURNS: usize = 6, "most rounds in which samples of axes that move are turned back; two or three do", UNMEASURED;
         REST: f64 = 0.01, "gain of log-likelihood by a further turn that no longer matters", UNMEASURED;
         MOVING: f64 = 15.0, "gain of log-likelihood from which axes are said to move against each other, and a torque without a model to act: a chance of 1e-6", DERIVED;
+        SCALED: f64 = 12.0, "the same of an error of the scale of rates beside attitudes, which is one coefficient in place of three: a chance of 1e-6", DERIVED;
     }
     flights: "flights in a recording" {
         ALMOST_ALL: f64 = 0.9, "share of the turning tests that a record in a wrong unit contradicts", UNMEASURED;

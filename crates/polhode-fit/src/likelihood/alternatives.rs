@@ -1,4 +1,4 @@
-//! What would explain the samples better: a torque, or axes of rates and attitudes that move against each other.
+//! What would explain the samples better: a torque, axes of rates and attitudes that move against each other, or an error of the rates.
 //!
 //! To first order in its coefficients c a torque moves the motion by Φ(t) ∫ Φ(s)⁻¹ (0, J⁻¹ ∂τ/∂c) ds, with Φ the derivative by the
 //! start.
@@ -10,13 +10,17 @@ use crate::likelihood::motion::{Motion, Moved, Start};
 use crate::likelihood::track::{ALL, COMMON, Model, OWN, Track};
 use crate::physical::coordinates::tensor;
 use crate::thresholds::likelihood::PANEL;
+use crate::thresholds::poses;
 
-/// Columns beside those of the model: drag, a constant torque, and turns over the time of the axes of attitudes and of rates.
-const FURTHER: usize = 10;
+/// Columns beside those of the model: drag, a constant torque, turns over the time of the axes of attitudes and of rates, an offset of the
+/// rates and an error of their scale.
+const FURTHER: usize = 14;
 const WIDTH: usize = ALL + FURTHER;
 const DRAG: core::ops::Range<usize> = 0..1;
 const CONSTANT: core::ops::Range<usize> = 1..4;
 const MOVING: [core::ops::Range<usize>; 2] = [4..7, 7..10];
+const OFFSET: core::ops::Range<usize> = 10..13;
+const SCALE: core::ops::Range<usize> = 13..14;
 
 type Rows = SMatrix<f64, 3, WIDTH>;
 /// A rotation vector and a rate by the three components of a torque.
@@ -45,6 +49,17 @@ pub(crate) struct Alternatives {
     pub(crate) moving: Option<MovingAxes>,
     of_attitudes: Option<Found>,
     of_rates: Option<Found>,
+    offset: Option<Found>,
+    scale: Option<Found>,
+}
+
+/// An error of rates that stand beside attitudes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum RateError {
+    /// A constant is added to them.
+    Offset,
+    /// They are too large by one share along all axes.
+    Scale,
 }
 
 /// By how much the axes of one kind of sample turn from the first sample of a stretch to its last, rad.
@@ -77,12 +92,35 @@ impl Alternatives {
             each.filter_map(|(found, is_of_rates)| Some(MovingAxes { found: found.clone()?, is_of_rates }));
         let moving = each.max_by(|a, b| a.found.gain.total_cmp(&b.found.gain));
         let drag = if model.drag.is_none() { Some(of(DRAG)?) } else { None };
-        Some(Alternatives { drag, constant: of(CONSTANT)?, moving, of_attitudes, of_rates })
+        let (offset, scale) = (of_axes(OFFSET), of_axes(SCALE));
+        Some(Alternatives { drag, constant: of(CONSTANT)?, moving, of_attitudes, of_rates, offset, scale })
     }
 
     /// What the axes of one kind of sample would bring if they moved.
     pub(crate) fn of_axes(&self, of_rates: bool) -> Option<&Found> {
         if of_rates { self.of_rates.as_ref() } else { self.of_attitudes.as_ref() }
+    }
+
+    /// What an error of the rates would bring; `None` without attitudes beside them.
+    pub(crate) fn of_error(&self, error: RateError) -> Option<&Found> {
+        match error {
+            RateError::Offset => self.offset.as_ref(),
+            RateError::Scale => self.scale.as_ref(),
+        }
+    }
+
+    /// The error of the rates that explains the samples better than the other does, and better than a torque or axes that move.
+    pub(crate) fn error_of_rates(&self) -> Option<(RateError, &Found)> {
+        // more unknowns explain more in any case
+        let worth = |found: &Found| found.gain - found.values.len() as f64;
+        let moving = self.moving.as_ref().map(|moving| &moving.found);
+        let others = [self.drag.as_ref(), Some(&self.constant), moving];
+        let most = others.into_iter().flatten().map(worth).fold(0.0, f64::max);
+        let each = [(RateError::Offset, poses::MOVING), (RateError::Scale, poses::SCALED)];
+        let each = each.into_iter().filter_map(|(error, least)| Some((error, least, self.of_error(error)?)));
+        let each = each.filter(|&(_, least, found)| found.gain > least && worth(found) > most);
+        let best = each.max_by(|a, b| worth(a.2).total_cmp(&worth(b.2)));
+        best.map(|(error, _, found)| (error, found))
     }
 }
 
@@ -162,6 +200,8 @@ fn add(
             if both {
                 let turned = moved.rate.cross_matrix() * (t / span);
                 rows.fixed_view_mut::<3, 3>(0, ALL + 7).copy_from(&turned);
+                rows.fixed_view_mut::<3, 3>(0, ALL + 10).fill_with_identity();
+                rows.set_column(ALL + 13, &moved.rate);
             }
             put(rows, rate - moved.rate, levels.rate);
         }

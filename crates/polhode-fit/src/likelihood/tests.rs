@@ -6,7 +6,7 @@ use polhode::num::Random;
 use polhode::rotation::{Quat, Vec3};
 
 use crate::likelihood::alignment::at_nodes;
-use crate::likelihood::alternatives::Alternatives;
+use crate::likelihood::alternatives::{Alternatives, RateError};
 use crate::likelihood::choice::{Acting, Moved, is_linear, left_out, with_torque};
 use crate::likelihood::descent::{Levels, Problem, moved};
 use crate::likelihood::growth::{Followed, follow, squares, steady};
@@ -229,6 +229,46 @@ fn axes_that_move_are_found_by_one_step() {
         }
         assert!(moving.found.gain > 15.0 && all.of_axes(is_of_rates).unwrap().gain == moving.found.gain);
         assert!(all.of_axes(!is_of_rates).unwrap().gain < moving.found.gain);
+        assert!(all.error_of_rates().is_none(), "{:?}", all.error_of_rates());
+    }
+}
+
+/// An offset of the rates, or an error of their scale, is found with its size, and is not taken for a torque or for axes that move. Neither
+/// is named of rates without error, whether a torque acts or not.
+#[test]
+fn errors_of_the_rates_are_found_by_one_step() {
+    let alternatives = |tracks: &[Track]| {
+        let free = found(tracks, false);
+        Alternatives::new(&free.tracks, &free.model, free.levels).unwrap()
+    };
+    let misread = |offset: Vector3<f64>, scale: f64| {
+        let mut tracks = tracks(&Disturbances::default());
+        for rate in tracks.iter_mut().flat_map(|track| track.rates.iter_mut()) {
+            *rate = *rate * (1.0 + scale) + offset;
+        }
+        alternatives(&tracks)
+    };
+    let offset = vector([0.02, -0.01, 0.015]);
+    let all = misread(offset, 0.0);
+    let (error, own) = all.error_of_rates().unwrap();
+    assert_eq!(error, RateError::Offset);
+    for k in 0..3 {
+        let apart = (own.values[k] - offset[k]).abs();
+        assert!(apart < 4.0 * own.sigmas[k] + 0.05 * offset.norm(), "{:?}", own.values);
+    }
+    for scale in [0.05, -0.05] {
+        let all = misread(Vector3::zeros(), scale);
+        let (error, own) = all.error_of_rates().unwrap();
+        assert_eq!(error, RateError::Scale);
+        assert!((own.values[0] - scale).abs() < 4.0 * own.sigmas[0] + 2e-3, "{scale}: {:?}", own.values);
+    }
+    for by in [
+        Disturbances::default(),
+        Disturbances::default().with_relative_drag(3e-3),
+        Disturbances::default().with_torque(vector([4e-4, -2e-4, 3e-4])),
+    ] {
+        let all = alternatives(&tracks(&by));
+        assert!(all.error_of_rates().is_none(), "{:?}", all.error_of_rates());
     }
 }
 

@@ -1,6 +1,7 @@
 //! The free motion that follows attitudes, and what contradicts it.
 
 use nalgebra::{Matrix3, Vector3};
+use polhode::record::{Record, Segment};
 use polhode::rotation::{Quat, Vec3};
 
 use crate::error::FitError;
@@ -16,9 +17,12 @@ use crate::models::weighed::Weighed;
 use crate::physical::coordinates::{Coordinates, Form, coordinates, tensor};
 use crate::poses::clean::{jumps, turns};
 use crate::poses::fault::PoseFault;
+use crate::poses::misread::{Misread, without_error_of_rates};
 use crate::poses::moving::{Moving, with_moving_axes};
 use crate::poses::record::{PoseSegment, Poses};
 use crate::settings::Settings;
+use crate::signal::noise::variance;
+use crate::signal::stretch::Stretch;
 use crate::thresholds::noise::{DEVIATIONS, LEAST};
 use crate::thresholds::poses::{COARSE, FEWEST, HALF_TURN, MOVING, SAME_SIZE, STILL};
 
@@ -31,6 +35,8 @@ pub(crate) struct Read {
     pub(crate) used: Vec<(usize, f64)>,
     /// What neighbouring attitudes say of the noise, where the body turns little between them, rad.
     pub(crate) local_noise: Option<f64>,
+    /// What neighbouring rates say of the noise of a component, where they stand beside attitudes, rad/s.
+    pub(crate) rate_noise: Option<f64>,
     /// Largest turn from one attitude to the next, rad.
     pub(crate) largest_turn: f64,
     /// Samples that jump.
@@ -60,10 +66,12 @@ pub(crate) struct Free {
     pub(crate) without: Option<Coordinates>,
     /// What each torque makes of the samples.
     pub(crate) models: Vec<Weighed>,
-    /// What a torque or moving axes would bring; `None` where the samples do not determine the model.
+    /// What a torque, moving axes or an error of the rates would bring; `None` where the samples do not determine the model.
     pub(crate) alternatives: Option<Alternatives>,
     /// How the axes of rates and attitudes turn against each other, where they do.
     pub(crate) moving: Option<Moving>,
+    /// The error that was taken out of the rates, where they have one.
+    pub(crate) misread: Option<Misread>,
     pub(crate) read: Read,
     /// The information on the tensor at the steady spins that explain the samples nearly as well, if they do: a wobble within the noise
     /// would pass for one that tells the tensor.
@@ -95,7 +103,9 @@ impl Begun {
         let first = turned(&first, &turn);
         // a motion that moves far between neighbours is left among their noise
         let local_noise = (largest_turn <= COARSE).then_some(local_noise);
-        let read = Read { unit, used, local_noise, largest_turn, jumps, has_rates: poses.has_rates() };
+        let has_rates = poses.has_rates();
+        let rate_noise = has_rates.then(|| noise_of_rates(&stretches, &rates).max(LEAST.sqrt() * unit));
+        let read = Read { unit, used, local_noise, rate_noise, largest_turn, jumps, has_rates };
         Ok(Begun { tracks, first, turn, noise, read })
     }
 }
@@ -113,11 +123,16 @@ impl Free {
             let moved = |drag| Some(Moved::new(follow(tracks, first, turn, levels, drag)?));
             with_torque(settings.torque, moved)
         };
+        let (found, misread) = without_error_of_rates(&tracks, found, again);
+        let tracks = match &misread {
+            Some(error) => error.taken_out(&tracks),
+            None => tracks,
+        };
         let (found, moving) = with_moving_axes(&tracks, found, again);
         let Found { moved, torque, gain, without, models } = found;
         let Moved { followed, alternatives } = moved;
         let steady = steady_within_noise(&followed);
-        Ok(Free { followed, torque, gain, without, models, alternatives, moving, read, steady })
+        Ok(Free { followed, torque, gain, without, models, alternatives, moving, misread, read, steady })
     }
 
     /// Mean square of what is left of the attitudes, or of rates alone, over their noise, where that is known.
@@ -218,6 +233,18 @@ fn unit_of(nodes: &[Vec<Node>], noise: f64) -> Option<f64> {
     }
     let unit = f64::sqrt(square / count);
     (unit.is_normal() && unit > 0.0).then_some(unit)
+}
+
+/// What neighbouring rates say of the noise of a component, or its rounding where that is more, rad/s.
+fn noise_of_rates(stretches: &[(Vec<f64>, Vec<Quat<f64>>)], rates: &[Vec<Vector3<f64>>]) -> f64 {
+    let both = || stretches.iter().zip(rates).filter(|(_, rates)| !rates.is_empty());
+    let read = both().map(|((times, _), rates)| Stretch::new(times.clone(), rates.clone()));
+    let read: Vec<Stretch> = read.collect();
+    let mut record = Record::default();
+    let segments =
+        both().filter_map(|((times, _), rates)| Segment::new("", times.clone(), rates.clone()).ok());
+    record.segments.extend(segments);
+    variance(&read).max(record.rounding(&record.quanta())).sqrt()
 }
 
 /// The turn from the axes of the attitudes to those of the rates, where there are rates.

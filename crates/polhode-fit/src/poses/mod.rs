@@ -5,5 +5,6 @@ pub(crate) mod error;
 pub(crate) mod fault;
 pub(crate) mod fit;
 pub(crate) mod free;
+pub(crate) mod misread;
 pub(crate) mod moving;
 pub(crate) mod record;

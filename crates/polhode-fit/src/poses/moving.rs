@@ -54,7 +54,7 @@ pub(crate) fn with_moving_axes(
 }
 
 /// The covariance of the tensor by a factor of that of all that is shared, and by a shift of it.
-fn added(spread: &DMatrix<f64>, moved: &DVector<f64>) -> Form {
+pub(super) fn added(spread: &DMatrix<f64>, moved: &DVector<f64>) -> Form {
     let shift = Coordinates::from_fn(|k, _| moved[k]);
     let own = spread.rows(0, 5) * spread.rows(0, 5).transpose();
     Form::from_fn(|i, k| own[(i, k)]) + shift * shift.transpose()

@@ -31,7 +31,7 @@ use crate::report::model::models;
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, WithoutSegment};
 use crate::report::scale::{Noise, by_prior, check_constant, check_same, scale_of};
 use crate::report::torque_free::{InvariantTrend, Whiteness};
-use crate::report::warnings::{Doubts, of_likelihood};
+use crate::report::warnings::{Doubts, of_likelihood, of_rates};
 use crate::settings::Settings;
 use crate::settings::torque::TorqueModel;
 use crate::signal::stretch::Stretch;
@@ -174,13 +174,16 @@ pub(crate) fn report(
         shape,
     };
     let alternatives = free.alternatives.as_ref().filter(|_| free.torque != Acting::Constant);
+    // an error of the rates that explains more is named in its place
+    let alternatives = alternatives.filter(|found| found.error_of_rates().is_none());
     let doubts = Doubts {
         misfit,
         widened: widened.filter(|_| !free.followed.beyond.is_empty()),
         constant: alternatives.and_then(|found| left_out(&free.followed, &found.constant)),
         outliers: outliers(free),
     };
-    estimate.warnings = of_likelihood(&estimate, &doubts);
+    let beside = of_rates(free, settings.noise);
+    estimate.warnings = beside.into_iter().chain(of_likelihood(&estimate, &doubts)).collect();
     Ok(estimate)
 }
 
@@ -236,8 +239,9 @@ fn information(settings: &Settings, free: &Free) -> Result<Information, FitError
         let each = torque_columns(TorqueModel::Drag).into_iter();
         torques.extend(each.map(|column| Nuisance::new(&column, drag, sigma, free.read.unit)));
     }
-    if let Some(moving) = &free.moving {
-        let covariance = tensor.cholesky().ok_or_else(singular)?.inverse() + moving.spread;
+    let spreads = [free.moving.as_ref().map(|own| own.spread), free.misread.map(|own| own.spread)];
+    for spread in spreads.into_iter().flatten() {
+        let covariance = tensor.cholesky().ok_or_else(singular)?.inverse() + spread;
         tensor = covariance.cholesky().ok_or_else(singular)?.inverse();
     }
     let curvature = tensor;

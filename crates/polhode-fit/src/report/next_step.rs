@@ -191,6 +191,9 @@ impl Estimate {
             | Warning::AttitudeResiduals { .. }
             | Warning::ConstantTorque { .. }
             | Warning::MovingAxes { .. }
+            | Warning::RateOffset { is_fitted: false, .. }
+            | Warning::RateScale { is_fitted: false, .. }
+            | Warning::RateResiduals { .. }
             | Warning::Memory(_)
             | Warning::Vibration { .. } => Some(Contradiction::Residuals),
             _ => None,

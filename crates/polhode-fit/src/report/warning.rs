@@ -238,6 +238,31 @@ pub enum Warning {
         /// Gain of log-likelihood with that.
         gain: f64,
     },
+    /// The rates beside attitudes have a constant offset.
+    RateOffset {
+        /// Its length, rad/s.
+        size: f64,
+        /// Gain of log-likelihood with it, by one step of least squares.
+        gain: f64,
+        /// Whether the fit takes it out.
+        is_fitted: bool,
+    },
+    /// The rates beside attitudes have an error of scale.
+    RateScale {
+        /// The share by which they are too large.
+        scale: f64,
+        /// Gain of log-likelihood with it, by one step of least squares.
+        gain: f64,
+        /// Whether the fit takes it out.
+        is_fitted: bool,
+    },
+    /// What the motion leaves of the rates beside attitudes exceeds their noise.
+    RateResiduals {
+        /// Over the noise.
+        times: f64,
+        /// The noise of a component, rad/s.
+        noise: f64,
+    },
     /// The likelihood falls less than a normal distribution would: the deviations are those at which it falls as far.
     Profile {
         /// The deviation of the tensor over that of the second derivative of the likelihood.
@@ -471,6 +496,24 @@ impl fmt::Display for Warning {
                 "the axes of attitudes and rates move against each other, by {turn:.2e} rad from the first sample to the last (log-likelihood \
                  higher by {gain:.0}): the fit reckons with an even turn; fix both to the body, or compare their clocks"
             ),
+            Self::RateOffset { size, gain, is_fitted } => write!(
+                f,
+                "an offset of the rates of {size:.1e} rad/s explains the record better (log-likelihood higher by {gain:.0}): {}; calibrate the \
+                 gyroscope at rest",
+                taken_out(*is_fitted)
+            ),
+            Self::RateScale { scale, gain, is_fitted } => write!(
+                f,
+                "an error of the scale of the rates of {:+.2} % explains the record better (log-likelihood higher by {gain:.0}): {}; calibrate the \
+                 gyroscope",
+                100.0 * scale,
+                taken_out(*is_fitted)
+            ),
+            Self::RateResiduals { times, noise } => write!(
+                f,
+                "the motion leaves {times:.1} times what the noise of the rates of {noise:.2e} rad/s explains: errors of the gyroscope that \
+                 last over many samples, as a delay or axes that are not at right angles, or torques; deviations are enlarged by that factor"
+            ),
             Self::Profile { times } => write!(
                 f,
                 "tensors far from this one explain the record nearly as well: the deviations are {times:.1} times those of the second derivative \
@@ -480,6 +523,15 @@ impl fmt::Display for Warning {
                 write!(f, "only {dof} degrees of freedom: chi squared is no reliable check")
             }
         }
+    }
+}
+
+/// What the fit makes of an error of the rates.
+fn taken_out(is_fitted: bool) -> &'static str {
+    if is_fitted {
+        "the fit takes it out"
+    } else {
+        "it is no part of the fit, and the tensor may be off by more than its deviations"
     }
 }
 

@@ -7,8 +7,9 @@ use crate::thresholds::warnings::{APART, AS_WELL, FAR, FEW, NOISY, RESIDUALS, UN
 use nalgebra::Vector3;
 use polhode::record::{Record, Segment, Spike};
 
+use crate::likelihood::alternatives::{Alternatives, RateError};
 use crate::models::reading_error::ReadingError;
-use crate::poses::free::by_chance;
+use crate::poses::free::{Free, by_chance};
 use crate::report::attitudes::AttitudeFit;
 use crate::report::differing::Differing;
 use crate::report::estimate::Estimate;
@@ -233,7 +234,30 @@ pub(super) fn of_likelihood(e: &Estimate, doubts: &Doubts) -> Vec<Warning> {
     list
 }
 
-/// The same of attitudes under torques; `misfit` is what is left over the noise, where that is known, `density` that of torque noise.
+/// What is said of rates beside attitudes: an error that was taken out of them, one that is left, and what the motion leaves of them over
+/// their noise, which is `given` or told by neighbours.
+pub(super) fn of_rates(free: &Free, given: Option<f64>) -> Vec<Warning> {
+    let unit = free.read.unit;
+    let named = |error, offset: f64, scale, gain, is_fitted| match error {
+        RateError::Offset => Warning::RateOffset { size: offset * unit, gain, is_fitted },
+        RateError::Scale => Warning::RateScale { scale, gain, is_fitted },
+    };
+    let taken = free.misread.map(|own| named(own.error, own.offset.norm(), own.scale, own.gain, true));
+    let left = free.alternatives.as_ref().and_then(Alternatives::error_of_rates);
+    let left = left.map(|(error, found)| {
+        let size = found.values.iter().map(|value| value * value).sum::<f64>().sqrt();
+        named(error, size, found.values[0], found.gain, false)
+    });
+    // of rates alone the noise that is given is compared with what is left elsewhere
+    let noise = given.or(free.read.rate_noise).filter(|noise| *noise > 0.0 && free.followed.model.is_aligned);
+    let beyond = noise.map(|noise| (free.followed.levels.rate * unit / noise, noise));
+    let most = by_chance(free.followed.dof[1]).max(RESIDUALS);
+    let beyond = beyond.filter(|(times, _)| times * times > most);
+    let beyond = beyond.map(|(times, noise)| Warning::RateResiduals { times, noise });
+    [taken, left, beyond].into_iter().flatten().collect()
+}
+
+/// What limits the use of a tensor of attitudes under torques; `misfit` is what is left over the noise, where that is known, `density` that of torque noise.
 pub(super) fn of_smoothed(e: &Estimate, misfit: Option<f64>, density: f64) -> Vec<Warning> {
     let outliers = e.attitudes.as_ref().map_or(0, |attitudes| attitudes.left_out);
     let doubts = Doubts { misfit, widened: None, constant: None, outliers };

@@ -245,6 +245,74 @@ fn axes_that_turn_against_each_other_are_fitted() {
     assert!((0.4..1.8).contains(&(squares / count)), "{}", squares / count);
 }
 
+/// An offset of rates beside attitudes, or an error of their scale, is named with its size and taken out; neither a torque nor axes that
+/// move are named in its place, and the tensor is covered.
+#[test]
+fn errors_of_rates_beside_attitudes_are_named_and_taken_out() {
+    let toss = toss(ASYMMETRIC, 20.0, 30.0, 1e-2, 4);
+    let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.4, -1.2, 0.7));
+    let r = turn.to_rotation_matrix();
+    let expected = r.matrix() * toss.body.tensor() * r.matrix().transpose();
+    let cases: [(f64, f64); 4] = [(0.0, 0.0), (0.02, 0.0), (0.0, 0.05), (0.0, -0.05)];
+    for (offset, scale) in cases {
+        let constant = Vector3::new(0.6, -0.8, 0.0) * offset;
+        let rates: Vec<Vector3<f64>> =
+            toss.rates(|_| turn, 0.02).iter().map(|w| w * (1.0 + scale) + constant).collect();
+        let both = Poses::with_rates("toss", &toss.times, &toss.measured, &rates).unwrap();
+        let e = fit_poses(&both, &Settings::default()).unwrap();
+        let is_cause = |w: &&Warning| {
+            matches!(
+                w,
+                Warning::RateOffset { .. }
+                    | Warning::RateScale { .. }
+                    | Warning::RateResiduals { .. }
+                    | Warning::MovingAxes { .. }
+                    | Warning::ConstantTorque { .. }
+                    | Warning::Torque(_)
+            )
+        };
+        let named: Vec<&Warning> = e.warnings.iter().filter(is_cause).collect();
+        match named.as_slice() {
+            [] => assert!(offset == 0.0 && scale == 0.0),
+            [Warning::RateOffset { size, is_fitted: true, .. }] => {
+                // 0.02/sqrt(600) = 8e-4 of each component
+                assert!(scale == 0.0 && (size - offset).abs() < 4e-3, "{size}");
+            }
+            [Warning::RateScale { scale: found, is_fitted: true, .. }] => {
+                assert!(offset == 0.0 && (found - scale).abs() < 4e-3, "{found}");
+            }
+            other => panic!("{offset} {scale}: {other:?}"),
+        }
+        assert_eq!(e.torque.model, TorqueModel::None);
+        let chi2 = square(&entries(&(e.shape.tensor() - expected)), &e.free_covariance);
+        // where the 99.99 % ellipsoid ends
+        assert!(chi2 < 25.75, "{offset} {scale}: {chi2}");
+    }
+}
+
+/// What the motion leaves of rates beside attitudes is compared with the noise that neighbouring rates tell.
+#[test]
+fn rates_that_the_motion_does_not_explain_are_told() {
+    let toss = toss(ASYMMETRIC, 20.0, 30.0, 1e-2, 4);
+    let clean = toss.rates(|_| UnitQuaternion::identity(), 0.02);
+    // slower than the noise and faster than the body
+    let wave = |t: &f64| Vector3::x() * (0.05 * libm::sin(3.0 * t));
+    let waved: Vec<Vector3<f64>> = toss.times.iter().zip(&clean).map(|(t, w)| w + wave(t)).collect();
+    let told = |rates: &[Vector3<f64>]| {
+        let both = Poses::with_rates("toss", &toss.times, &toss.measured, rates).unwrap();
+        let e = fit_poses(&both, &Settings::default().with_torque(TorqueModel::None)).unwrap();
+        e.warnings.iter().find_map(|w| match w {
+            Warning::RateResiduals { times, noise } => Some((*times, *noise)),
+            _ => None,
+        })
+    };
+    assert_eq!(told(&clean), None);
+    let (times, noise) = told(&waved).unwrap();
+    assert!((noise / 0.02 - 1.0).abs() < 0.15, "{noise}");
+    // the root of 1 + 0.05^2/6/0.02^2 is 1.43
+    assert!((1.25..1.6).contains(&times), "{times}");
+}
+
 #[test]
 fn what_attitudes_do_not_tell_is_refused_with_its_numbers() {
     // half a turn between samples
