@@ -389,8 +389,7 @@ mod tests {
             centre: DVector::from_column_slice(&centre),
             root: DMatrix::identity(6, 6) * 10.0,
         };
-        let (found, pull) =
-            nearest_bodies(&told([0.5, 1.0, 3.0, 0.0, 0.0, 0.0]), &[(0, base)]).unwrap();
+        let (found, pull) = nearest_bodies(&told([0.5, 1.0, 3.0, 0.0, 0.0, 0.0]), &[(0, base)]).unwrap();
         let expected = DVector::from_vec(vec![0.5 + 1.0 / 3.0, 4.0 / 3.0, 8.0 / 3.0, 0.0, 0.0, 0.0]);
         assert!((found - expected).amax() < 1e-9);
         assert!((pull - 10.0 / 3.0_f64.sqrt()).abs() < 1e-7, "{pull}");

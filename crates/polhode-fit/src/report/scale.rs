@@ -367,4 +367,97 @@ mod tests {
         assert!((both.trace() / (least * least) - 1.0).abs() < 1e-12);
         assert!(of_mean.trace() > 0.0 && of_shape.trace() > 0.0);
     }
+
+    fn example() -> (Matrix3<f64>, Noise) {
+        let j = Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45);
+        (j, Noise { variance: 1e-4, is_in_rates: true })
+    }
+
+    /// The trace follows the shape so that the known quantity stays: by differences.
+    #[test]
+    fn the_slope_of_the_trace_is_that_of_differences() {
+        let (j, noise) = example();
+        let times: Vec<f64> = (0..40).map(|i| 0.1 * f64::from(i)).collect();
+        let rates = times.iter().map(|t| Vector3::new(0.3 + 0.1 * t, 1.0 - 0.1 * t, 0.2 * t)).collect();
+        let stretches = [Stretch::new(times, rates)];
+        let axis = Vector3::new(1.0, -2.0, 0.5);
+        let moment = Known::Moment { axis, value: 0.7 };
+        for known in [Known::Trace(3.0), moment, Known::TwiceEnergy(3.0), Known::Momentum(3.0)] {
+            let of = |j: &Matrix3<f64>| scale_of(known, &stretches, 2.0, j, noise);
+            let (scale, h) = (of(&j), 1e-5);
+            for k in 0..5 {
+                let by = (of(&(j + basis(k) * h)).trace - of(&(j - basis(k) * h)).trace) / (2.0 * h);
+                assert!((by - scale.slope[k]).abs() < 1e-6 * scale.trace, "{known:?} {k}: {by:e}");
+            }
+        }
+    }
+
+    /// A body of constant rate has the size of what is known over the mean, less what noise adds to that where the rates are readings;
+    /// the mean of n readings has the variance (4 σ² |M ω|² + 2 σ⁴ tr M²)/n.
+    #[test]
+    fn the_size_is_what_is_known_over_the_mean() {
+        let (j, noise) = example();
+        let w = Vector3::new(0.3, 1.0, -0.2);
+        let stretches = [Stretch::new((0..10).map(f64::from).collect(), vec![w; 10])];
+        let n = Vector3::new(0.6, 0.8, 0.0);
+        let v = noise.variance;
+        for is_in_rates in [true, false] {
+            let of = |known| scale_of(known, &stretches, 2.0, &j, Noise { is_in_rates, ..noise });
+            let bias = if is_in_rates { v } else { 0.0 };
+            let moment = of(Known::Moment { axis: n * 5.0, value: 0.7 });
+            assert!((moment.trace * n.dot(&(j * n)) / 0.7 - 1.0).abs() < 1e-12 && moment.mean.is_none());
+            assert!(of(Known::Trace(3.0)).trace == 3.0 && of(Known::Trace(3.0)).mean.is_none());
+            for (known, m) in [(Known::TwiceEnergy(3.0), j), (Known::Momentum(3.0), j * j)] {
+                let scale = of(known);
+                let value = w.dot(&(m * w)) - bias * m.trace();
+                let unit = if m == j { 4.0 * value } else { 2.0 * value.sqrt() };
+                assert!((scale.trace * unit / 3.0 - 1.0).abs() < 1e-12, "{known:?}");
+                let mean = scale.mean.unwrap().0;
+                let square = (m * w).norm_squared() - bias * m.norm_squared();
+                let variance = v * (4.0 * square + 2.0 * v * m.norm_squared()) / 10.0;
+                assert!((mean.variance / variance - 1.0).abs() < 1e-12, "{known:?}");
+                assert!((mean.bias - bias * m.trace()).abs() < 1e-18 && mean.samples == 10.0);
+            }
+        }
+    }
+
+    /// Where a record adds nothing to a prior, tensor and covariance are those of the prior.
+    #[test]
+    fn a_prior_alone_gives_itself_back() {
+        let tensor = Matrix3::new(2.0, 0.2, -0.1, 0.2, 3.0, 0.3, -0.1, 0.3, 4.0);
+        let factor = SMatrix::<f64, 6, 6>::from_fn(|i, k| 0.02 / (1.0 + ((3 * i + 2 * k) % 7) as f64));
+        let covariance = factor * factor.transpose() + SMatrix::identity() * 1e-4;
+        let told = crate::physical::prior::Prior::new(tensor, covariance).told().unwrap();
+        let root = told.shape_root();
+        let shape = (root.transpose() * root).try_inverse().unwrap();
+        let (inertia, found) = by_prior(&(tensor / 9.0), &told, &shape, &told.x).unwrap();
+        assert!((inertia.unwrap().tensor() - tensor).amax() < 1e-12);
+        assert!((found.unwrap() - covariance).amax() < 1e-9 * covariance.amax());
+    }
+
+    /// A known size may lie five deviations from that of a prior, and no further.
+    #[test]
+    fn a_prior_of_another_size_is_refused() {
+        let (j, noise) = example();
+        let told = crate::physical::prior::Prior::relative(j * 3.0, 0.01).told().unwrap();
+        let sigma = told.size_deviation();
+        for (deviations, is_refused) in [(4.9, false), (5.1, true), (-4.9, false), (-5.1, true)] {
+            let known = Known::Trace(3.0 * libm::exp(deviations * sigma));
+            let scale = scale_of(known, &[], 1.0, &j, noise);
+            let found = scale.sized(known, Some(&told), &j, &Form::zeros(), 1.0, None);
+            match found {
+                Err(FitError::PriorSize { prior, sigma: of, known }) if is_refused => {
+                    assert!((prior - 3.0).abs() < 1e-12 && (of / (3.0 * sigma) - 1.0).abs() < 1e-12);
+                    assert_eq!(known, scale.trace);
+                }
+                found => assert!(found.is_ok() && !is_refused, "{deviations}"),
+            }
+            assert!(scale.sized(known, None, &j, &Form::zeros(), 1.0, None).is_ok());
+        }
+        for trace in [1e-170, 1e170] {
+            let scale = scale_of(Known::Trace(trace), &[], 1.0, &j, noise);
+            let found = scale.sized(Known::Trace(trace), None, &j, &Form::zeros(), 1.0, None);
+            assert!(matches!(found, Err(FitError::Setting { value, .. }) if value == trace));
+        }
+    }
 }
