@@ -218,9 +218,8 @@ mod tests {
             for (k, (a, b)) in ENTRIES.into_iter().enumerate() {
                 assert!((row[3 + k] - all * w[a] * w[b]).abs() < 1e-12, "{k}");
             }
-            for k in 0..3 {
-                assert!(row[k].abs() < 1e-9 && (row[9 + k] - all * w[k]).abs() < 1e-12, "{k}");
-            }
+            assert!(row[..3].iter().all(|slope| slope.abs() < 1e-9), "{row:?}");
+            assert!((0..3).all(|k| (row[9 + k] - all * w[k]).abs() < 1e-12), "{row:?}");
         }
         let [slopes, sizes] = sums.sizes();
         assert!(slopes < 1e-15 && squares > 0.0);
