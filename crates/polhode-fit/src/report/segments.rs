@@ -117,7 +117,7 @@ mod tests {
             assert!((found.torque_noise / density - 1.0).abs() < 1e-12, "{shape:?}: {}", found.torque_noise);
             let WithoutSegment { ratios, sigma_ratios, shift } = found.without.unwrap();
             assert!((ratios[0] - 25.0 / 45.0).abs() < 1e-12 && (ratios[1] - 30.0 / 45.0).abs() < 1e-12);
-            // of a ratio r of moments with the gradients of squares 2/3 and the product −1/3: (2 + 2 r + 2 r²)/3
+            // gradients of moments have the squares 2/3 and the products −1/3
             for (r, sigma) in ratios.into_iter().zip(sigma_ratios) {
                 let square = 1e-5 * (2.0 + 2.0 * r + 2.0 * r * r) / 3.0 / (0.45 * 0.45);
                 assert!((sigma * sigma / square - 1.0).abs() < 1e-9, "{r} {sigma}");

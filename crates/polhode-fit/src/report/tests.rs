@@ -337,7 +337,8 @@ fn what_is_open_has_a_deviation_of_a_tenth() {
         assert!((found.deviations[4] * singular - 1.0).abs() < 1e-12);
     }
     let two = [1e4, 1e4, 0.0, 0.0, 0.0];
-    let is_pure = |middle: f64| open(two, scatter(middle)).null_directions[0] == Undetermined::TransverseRatio;
+    let first = |middle: f64| open(two, scatter(middle)).null_directions[0];
+    let is_pure = |middle: f64| first(middle) == Undetermined::TransverseRatio;
     assert!(is_pure(0.049) && !is_pure(0.051));
     assert!(open(two, scatter(0.049)).known[0].axis.z.abs() > 1.0 - 1e-12);
     // three numbers are too many for a pure spin
@@ -401,8 +402,7 @@ fn the_largest_error_of_the_sensor_is_measured_by_the_intervals() {
     let mut e = clean();
     e.sigma_principal = [1e-3, 1e-2, 1e-3];
     e.method = Method::ExactMotion;
-    let line =
-        |name, principal| Systematic { name, size: 0.01, unit: "rad/s", principal, ratios: [0.0; 2] };
+    let line = |name, principal| Systematic { name, size: 0.01, unit: "rad/s", principal, ratios: [0.0; 2] };
     e.systematic = vec![
         line("scale", [1.9e-3, 1e-2, 0.0]),
         line("offset_x", [1e-3, 2.5e-2, -3e-3]),
