@@ -460,4 +460,72 @@ mod tests {
             assert!(matches!(found, Err(FitError::Setting { value, .. }) if value == trace));
         }
     }
+
+    /// Whether two segments, the fourth and the sixth of a record, differ that have the means 1 and `larger` with variances of `each`, by noise
+    /// that was enlarged four times, by a walk, by a bias and by a shape that is known to `sigma` and moves them apart by twice of that.
+    fn differ(known: Known, larger: f64, each: [f64; 3], sigma: f64) -> Result<(), FitError> {
+        let at = |segment: usize| Stretch { segment, ..Stretch::new(vec![0.0], vec![Vector3::x()]) };
+        let mut covariance = Form::zeros();
+        covariance[(2, 2)] = sigma * sigma;
+        check_same(known, &[at(3), at(3), at(5)], &covariance, 4.0, |own, first| {
+            let is_first = own[0].segment == 3;
+            assert_eq!((own.len(), first), if is_first { (2, 0) } else { (1, 2) });
+            let mut slope = Coordinates::repeat(0.7);
+            slope[2] = if is_first { 1.0 } else { -1.0 };
+            let mean = Mean {
+                m: Matrix3::identity(),
+                value: if is_first { larger } else { 1.0 },
+                slope,
+                variance: each[0] / 4.0,
+                samples: 1.0,
+                bias: -each[2].sqrt(),
+                lever: Matrix3::identity(),
+                walk: each[1],
+            };
+            Scale { trace: 1.0, slope, mean: Some((mean, 1.0)) }
+        })
+    }
+
+    /// Two means of variance v that are d apart differ where half of d²/(2 v) is more than chance brings; what the shape explains is added to v,
+    /// of each mean the square by which it moves, twice.
+    #[test]
+    fn sizes_differ_beyond_chance() {
+        let most = (0.1 * 0.1 / 4.0) / quantile(1.0, SURE);
+        for (each, shape) in [
+            ([1.0, 0.0, 0.0], 0.0),
+            ([0.0, 1.0, 0.0], 0.0),
+            ([0.0, 0.0, 1.0], 0.0),
+            ([0.25, 0.25, 0.25], 0.25),
+            ([0.1, 0.0, 0.0], 0.9),
+        ] {
+            for (share, is_refused) in [(0.99, true), (1.01, false)] {
+                let parts = each.map(|of| of * most * share);
+                let sigma = (0.5 * shape * most * share).sqrt();
+                let found = differ(Known::TwiceEnergy(1.0), 1.1, parts, sigma);
+                assert_eq!(found.is_err(), is_refused, "{each:?} {shape} {share}: {found:?}");
+            }
+        }
+    }
+
+    /// However sure, energies that differ by three in a thousand are alike, and momenta, of which the mean is a square; a moment is the same
+    /// in all segments.
+    #[test]
+    fn sizes_that_are_alike_are_no_contradiction() {
+        let of = |known, larger| differ(known, larger, [1e-12, 0.0, 0.0], 0.0);
+        assert_eq!(of(Known::TwiceEnergy(1.0), 1.0029), Ok(()));
+        assert_eq!(of(Known::Momentum(1.0), 1.0059), Ok(()));
+        assert_eq!(of(Known::Trace(1.0), 2.0), Ok(()));
+        for (known, larger, quantity, factor) in [
+            (Known::TwiceEnergy(1.0), 1.0031, "the kinetic energy", 1.0031),
+            (Known::TwiceEnergy(1.0), 4.0, "the kinetic energy", 4.0),
+            (Known::Momentum(1.0), 1.0062, "the angular momentum", 1.0062_f64.sqrt()),
+            (Known::Momentum(1.0), 4.0, "the angular momentum", 2.0),
+        ] {
+            let expected = FitError::SizeDiffers { quantity, factor, largest: 3, smallest: 5 };
+            assert_eq!(of(known, larger), Err(expected));
+        }
+        // the smaller one counts as no less than its own deviation
+        let found = differ(Known::TwiceEnergy(1.0), 1e3, [4.0, 0.0, 0.0], 0.0);
+        assert!(matches!(found, Err(FitError::SizeDiffers { factor, .. }) if (factor - 500.0).abs() < 1e-9));
+    }
 }

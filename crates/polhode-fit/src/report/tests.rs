@@ -475,3 +475,16 @@ fn a_body_that_grows_at_the_bound_of_drag_is_driven() {
     e.momentum_trend = None;
     assert_eq!(check_driven(&e, None, &stretches, 2.0), Ok(()));
 }
+
+/// What changes its sign from one residual to the next has a correlation of one with each after it, in its own component: of two segments of
+/// n with the mean square 1, χ² is 9 · 2 (n − lag) at each lag, and pairs across segments are none.
+#[test]
+fn alternating_residuals_remember_each_lag_alike() {
+    let alternating: Vec<[f64; 3]> =
+        (0..100).map(|k| [if k % 2 == 0 { 3.0_f64.sqrt() } else { -3.0_f64.sqrt() }, 0.0, 0.0]).collect();
+    let all = [residuals(alternating.clone()), residuals(alternating)];
+    for (lags, pairs) in [(1, 198.0), (2, 198.0 + 196.0)] {
+        let found = memory(&all, lags).unwrap();
+        assert!(found.dof == 9 * lags && (found.chi2 / (9.0 * pairs) - 1.0).abs() < 1e-12, "{found:?}");
+    }
+}
