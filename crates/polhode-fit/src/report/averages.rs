@@ -125,6 +125,7 @@ mod tests {
         assert!((turned.product / noisy.product - 1.0).abs() < 1e-9);
     }
 
+    /// An axis is said with the products of inertia that it may have.
     #[test]
     fn an_axis_is_said_with_its_bound() {
         let axis = AverageAxis { axis: Vector3::new(0.0, 0.6, -0.8), product: 0.0123 };

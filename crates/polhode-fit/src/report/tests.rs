@@ -480,8 +480,9 @@ fn a_body_that_grows_at_the_bound_of_drag_is_driven() {
 /// n with the mean square 1, χ² is 9 · 2 (n − lag) at each lag, and pairs across segments are none.
 #[test]
 fn alternating_residuals_remember_each_lag_alike() {
+    let size = 3.0_f64.sqrt();
     let alternating: Vec<[f64; 3]> =
-        (0..100).map(|k| [if k % 2 == 0 { 3.0_f64.sqrt() } else { -3.0_f64.sqrt() }, 0.0, 0.0]).collect();
+        (0..100).map(|k| [if k % 2 == 0 { size } else { -size }, 0.0, 0.0]).collect();
     let all = [residuals(alternating.clone()), residuals(alternating)];
     for (lags, pairs) in [(1, 198.0), (2, 198.0 + 196.0)] {
         let found = memory(&all, lags).unwrap();
