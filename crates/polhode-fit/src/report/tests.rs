@@ -1,5 +1,7 @@
 //! Numbers and warnings of a report against simulations and differences, and what is said where a number passes its threshold.
 
+use std::sync::OnceLock;
+
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
@@ -189,8 +191,12 @@ fn deviations_of_the_answer_are_those_of_differences() {
 }
 
 fn clean() -> Estimate {
-    let (times, rates) = rates(&Disturbances::default(), 1e-3, 1200, &mut Random::new(5));
-    fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap()
+    static CLEAN: OnceLock<Estimate> = OnceLock::new();
+    let fitted = || {
+        let (times, rates) = rates(&Disturbances::default(), 1e-3, 1200, &mut Random::new(5));
+        fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap()
+    };
+    CLEAN.get_or_init(fitted).clone()
 }
 
 /// Each number of an answer is warned of just beyond its threshold, by its value, and not before it.
