@@ -171,3 +171,64 @@ fn local_cubic(s: &Stretch, at: usize, radius: f64) -> Option<Vector3<f64>> {
     let solution = normal.cholesky()?.solve(&right);
     Some(solution.row(0).transpose())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Means are of samples at most a width after the first of them, each with its count; around a time both ends belong to them.
+    #[test]
+    fn means_are_of_neighbours() {
+        let times = vec![0.0, 1.0, 2.0, 10.0, 11.5, 11.75];
+        let rates = (0..6).map(|k| Vector3::new(f64::from(k), 1.0, 0.0)).collect();
+        let s = Stretch::new(times, rates);
+        let means = Means::new(&s, 1.5);
+        assert_eq!(means.times.to_vec(), [0.5, 2.0, 10.75, 11.75]);
+        assert_eq!(means.rates.iter().map(|w| w.x).collect::<Vec<_>>(), [0.5, 2.0, 3.5, 5.0]);
+        assert_eq!(means.counts, [2.0, 1.0, 2.0, 1.0]);
+        assert!(means.rates.iter().all(|w| w.y == 1.0 && w.z == 0.0));
+        assert_eq!(means.around(2.0, 1.5), 0..2);
+        assert_eq!(means.around(6.0, 3.0), 2..2);
+        assert_eq!(means.around(10.75, 1.0), 2..4);
+        let one = Means::of_one(&s);
+        assert!(one.times.to_vec() == s.times && one.rates.to_vec() == s.rates && one.counts.is_empty());
+    }
+
+    /// A cubic through samples of a cubic is that cubic, also where fewer than four lie within the radius, and at the ends.
+    #[test]
+    fn a_cubic_is_its_own_fit() {
+        let times: Vec<f64> = [0, 1, 3, 4, 7, 9, 10, 14].map(f64::from).to_vec();
+        let of = |t: &f64| Vector3::new(1.0 + t * (0.5 - t * (0.2 - t * 0.01)), -t * t * t * 1e-2, 3.0);
+        let s = Stretch::new(times.clone(), times.iter().map(of).collect());
+        for at in 0..times.len() {
+            for radius in [0.5, 4.0, 100.0] {
+                let found = local_cubic(&s, at, radius).unwrap();
+                assert!((found - s.rates[at]).amax() < 1e-6, "{at} {radius}: {found}");
+            }
+        }
+    }
+
+    /// The cubic by least squares is a sum of the samples within the radius, three on each side at least, with weights that are known of
+    /// seven and of nine.
+    #[test]
+    fn the_cubic_is_by_the_samples_within_the_radius() {
+        let times: Vec<f64> = (0..11).map(f64::from).collect();
+        let mut rates = vec![Vector3::zeros(); 11];
+        rates[5] = Vector3::x();
+        let s = Stretch::new(times, rates);
+        // (−2, 3, 6, 7, 6, 3, −2)/21 and (−21, 14, 39, 54, 59, 54, 39, 14, −21)/231
+        for (at, radius, weight) in [
+            (5, 2.0, 7.0 / 21.0),
+            (4, 2.0, 6.0 / 21.0),
+            (3, 3.0, 3.0 / 21.0),
+            (7, 3.0, 3.0 / 21.0),
+            (5, 3.5, 7.0 / 21.0),
+            (5, 4.0, 59.0 / 231.0),
+            (4, 4.0, 54.0 / 231.0),
+            (6, 4.0, 54.0 / 231.0),
+        ] {
+            let found = local_cubic(&s, at, radius).unwrap();
+            assert!((found - Vector3::x() * weight).amax() < 1e-9, "{at} {radius}: {found}");
+        }
+    }
+}

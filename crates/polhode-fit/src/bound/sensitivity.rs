@@ -147,3 +147,27 @@ pub(super) fn of_tensor(information: &SMatrix<f64, 8, 8>) -> Option<Form> {
     let mixed = information.fixed_view::<3, 5>(5, 0).into_owned();
     Some(information.fixed_view::<5, 5>(0, 0) - mixed.transpose() * own.solve(&mixed))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The cubic through two values and their slopes is that of a cubic: 1 − 2 u + 3 u² − 4 u³.
+    #[test]
+    fn a_cubic_follows_from_its_ends() {
+        let ends = SVector::<f64, 4>::new(1.0, -2.0, -2.0, -8.0);
+        for u in [0.0, 0.2, 0.5, 0.9, 1.0] {
+            let expected = 1.0 - 2.0 * u + 3.0 * u * u - 4.0 * u * u * u;
+            assert!((hermite(u).dot(&ends) - expected).abs() < 1e-14, "{u}");
+        }
+    }
+
+    /// From a node the next is the last sample within the width, or the next sample.
+    #[test]
+    fn nodes_are_a_width_apart_or_neighbours() {
+        assert_eq!(nodes(&[0.0, 0.125, 0.25, 0.375, 1.0, 1.125], 0.25), [0, 2, 3, 4, 5]);
+        assert_eq!(nodes(&[0.0, 1.0, 2.0], 0.5), [0, 1, 2]);
+        assert_eq!(nodes(&[3.0], 0.5), [0]);
+        assert!(nodes(&[], 0.5).is_empty());
+    }
+}

@@ -4,10 +4,15 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 
-use crate::bound::motions::Motions;
+use crate::bound::attitudes::foreseen_attitude_bound;
+use crate::bound::motions::{Motions, foreseen_bound};
 use crate::bound::nearest_motion::nearest_motion;
+use crate::bound::planned::foreseen_bound_with;
 use crate::bound::sensitivity::{Euler, Sensitivity, Start, of_tensor};
 use crate::physical::coordinates::{coordinates, tensor};
+use crate::physical::prior::Prior;
+use crate::settings::Settings;
+use crate::settings::torque::TorqueModel;
 use crate::signal::stretch::Stretch;
 use crate::simulate::simulate;
 
@@ -111,4 +116,113 @@ fn sensitivities_are_those_of_differences() {
             assert!((slope - s.column(k)).amax() < 1e-5 * (1.0 + slope.amax()), "{i} {k}");
         }
     });
+}
+
+/// Two stretches tell twice as much as one, of a noise of twice the deviation a quarter; what has fewer than five samples is not asked.
+#[test]
+fn the_information_of_motions_adds_up() {
+    let times: Vec<f64> = (0..300).map(|k| 0.05 * f64::from(k)).collect();
+    let s = samples(times, 1e-3);
+    let x = coordinates(&body());
+    let one = Motions::nearest(core::slice::from_ref(&s), &x, 1e-6).unwrap();
+    let bound = one.bound(1e-6).unwrap();
+    assert!((one.bound(4e-6).unwrap() - bound * 4.0).amax() < 1e-9 * bound.amax());
+    let jumps = vec![Vector3::x(), Vector3::z(), Vector3::y(), Vector3::x()];
+    let few = Stretch::new(vec![0.0, 1.0, 2.0, 3.0], jumps);
+    let three = [s.clone(), few, s.clone()];
+    let both = Motions::nearest(&three, &x, 1e-6).unwrap();
+    assert!((both.bound(1e-6).unwrap() * 2.0 - bound).amax() < 1e-9 * bound.amax());
+    assert!(both.left.1 == 2.0 * one.left.1 && one.left.1 == 3.0 * 299.0);
+    assert!((both.left.0 / one.left.0 - 1.0).abs() < 1e-9);
+    let five = [samples((0..5).map(|k| 0.1 * f64::from(k)).collect(), 1e-3)];
+    assert_eq!(Motions::nearest(&five, &x, 1e-6).unwrap().left.1, 12.0);
+}
+
+/// What a sum over the motion shares with the coordinates, their starts taken out, times the covariance of these, is the part of the
+/// coordinates in the step that the sum makes of all eight.
+#[test]
+fn what_is_shared_is_the_part_of_the_coordinates() {
+    let times: Vec<f64> = (0..300).map(|k| 0.05 * f64::from(k)).collect();
+    let s = samples(times, 1e-3);
+    let x = coordinates(&body());
+    let euler = Euler::new(tensor(&x)).unwrap();
+    let (start, _) = nearest_motion(&euler, &s, 1e-6).unwrap();
+    let m = body() * body();
+    let (mut information, mut sum) = (SMatrix::<f64, 8, 8>::zeros(), SMatrix::<f64, 8, 1>::zeros());
+    euler.sweep(&s.times, &start, |_, w, s: &Sensitivity<8>| {
+        information += s.transpose() * s;
+        sum += s.transpose() * (m * w) * 2.0;
+    });
+    let inverse = information.try_inverse().unwrap();
+    let expected = (inverse * sum).fixed_rows::<5>(0).into_owned();
+    let motions = Motions::nearest(core::slice::from_ref(&s), &x, 1e-6).unwrap();
+    let shared = motions.shared(&m).unwrap();
+    let found = inverse.fixed_view::<5, 5>(0, 0) * shared;
+    assert!((found - expected).amax() < 1e-7 * expected.amax(), "{found} {expected}");
+    let two = [s.clone(), s.clone()];
+    let both = Motions::nearest(&two, &x, 1e-6).unwrap().shared(&m).unwrap();
+    assert!((both - shared * 2.0).amax() < 1e-9 * shared.amax());
+}
+
+/// What a planned record tells depends on no unit of time, on no zero of it, on no size of the body, and on the noise by its square.
+#[test]
+fn plans_have_no_units() {
+    let body = Inertia::from_tensor(body()).unwrap();
+    let large = Inertia::from_tensor(body.tensor() * 8.0).unwrap();
+    let times: Vec<f64> = (0..200).map(|k| 0.1 * f64::from(k)).collect();
+    let (late, fast): (Vec<f64>, Vec<f64>) = times.iter().map(|t| (t + 7.0, 0.5 * t)).unzip();
+    let settings = Settings::default().with_torque(TorqueModel::Drag);
+    type Plan<'a> = &'a dyn Fn(&Inertia, f64, &[f64], f64) -> SMatrix<f64, 6, 6>;
+    // twice as fast with twice the drag; the noise of attitudes is an angle
+    let plain = |body: &Inertia, speed: f64, times: &[f64], sigma: f64| {
+        foreseen_bound(body, start() * speed, times, sigma * speed).unwrap()
+    };
+    let with_drag = |body: &Inertia, speed: f64, times: &[f64], sigma: f64| {
+        let drag = [0.02 * speed];
+        foreseen_bound_with(body, start() * speed, times, sigma * speed, &settings, &drag).unwrap()
+    };
+    let of_attitudes = |body: &Inertia, speed: f64, times: &[f64], sigma: f64| {
+        foreseen_attitude_bound(body, start() * speed, times, sigma).unwrap()
+    };
+    let plans: [Plan<'_>; 3] = [&plain, &with_drag, &of_attitudes];
+    for (k, plan) in plans.into_iter().enumerate() {
+        let bound = plan(&body, 1.0, &times, 1e-3);
+        for (name, other) in [
+            ("zero", plan(&body, 1.0, &late, 1e-3)),
+            ("time", plan(&body, 2.0, &fast, 1e-3)),
+            ("size", plan(&large, 1.0, &times, 1e-3)),
+            ("noise", plan(&body, 1.0, &times, 2e-3) * 0.25),
+        ] {
+            let apart = (other - bound).amax() / bound.amax();
+            assert!(apart < 1e-6, "{k} {name}: {apart:e}");
+        }
+        // the trace is 1 and known
+        assert!(bound.fixed_view::<3, 3>(0, 0).sum().abs() < 1e-9 * bound.amax(), "{k}");
+    }
+}
+
+/// With a drag of zero among the unknowns no number of the tensor is known better; with a close prior they are known as by that.
+#[test]
+fn more_unknowns_tell_less_and_a_prior_more() {
+    let body = Inertia::from_tensor(body()).unwrap();
+    let times: Vec<f64> = (0..200).map(|k| 0.1 * f64::from(k)).collect();
+    let of = |settings: &Settings, coefficients: &[f64]| {
+        foreseen_bound_with(&body, start(), &times, 1e-3, settings, coefficients)
+    };
+    let plain = of(&Settings::default(), &[]).unwrap();
+    let drag = Settings::default().with_torque(TorqueModel::Drag);
+    let with_drag = of(&drag, &[0.0]).unwrap();
+    assert!(with_drag.trace() > plain.trace());
+    for k in 0..6 {
+        assert!(with_drag[(k, k)] >= plain[(k, k)] * (1.0 - 1e-9), "{k}");
+    }
+    // a prior that knows a thousand times as much is all that is known
+    let sigma = 1e-3 * plain.diagonal().min().sqrt();
+    let prior = Prior::new(body.tensor(), SMatrix::identity() * (sigma * sigma));
+    let held = of(&drag.clone().with_prior(prior.shape_only()), &[0.0]).unwrap();
+    // of the trace, which varies too, the entries off the diagonal are hardly a part
+    for k in 3..6 {
+        assert!((held[(k, k)] / (sigma * sigma) - 1.0).abs() < 0.2, "{k}: {}", held[(k, k)]);
+    }
+    assert!(of(&drag, &[]).is_none() && of(&Settings::default(), &[0.0]).is_none());
 }

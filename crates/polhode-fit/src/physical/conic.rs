@@ -89,3 +89,45 @@ impl Conditions {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// min ½ (x² + 2 y²) − 2 y with x ≥ 1 is at (1, 1), where the condition pulls as x does.
+    #[test]
+    fn a_linear_condition_holds_with_its_multiplier() {
+        let mut conditions = Conditions::new(2);
+        conditions.nonnegative(&[-1.0, 0.0], -1.0);
+        conditions.nonnegative(&[0.0, 1.0], 5.0);
+        let (x, duals) = conditions.solve_with_duals(&[1.0, 2.0], &[0.0, -2.0]).unwrap();
+        assert!((x[0] - 1.0).abs() < 1e-6 && (x[1] - 1.0).abs() < 1e-6, "{x:?}");
+        assert!((duals[0] - 1.0).abs() < 1e-6 && duals[1].abs() < 1e-6, "{duals:?}");
+        assert_eq!(conditions.solve(&[1.0, 2.0], &[0.0, -2.0]), Ok(x));
+    }
+
+    /// 1 + x ≥ |(3 + y, 4)| with the least x² + y² where y costs a million times as much: x = 4.
+    #[test]
+    fn a_cone_is_as_wide_as_its_height() {
+        let mut conditions = Conditions::new(2);
+        conditions.nonnegative(&[1.0, 0.0], 100.0);
+        let of = |x: f64, y: f64, base: f64| (DVector::from_vec(vec![x, y]), base);
+        conditions.second_order([of(1.0, 0.0, 1.0), of(0.0, 1.0, 3.0), of(0.0, 0.0, 4.0)]);
+        let x = conditions.solve(&[1.0, 1e6], &[0.0, 0.0]).unwrap();
+        assert!((x[0] - 4.0).abs() < 1e-4 && x[1].abs() < 1e-4, "{x:?}");
+    }
+
+    /// What cannot be met, what has no least, and what is no number are told apart.
+    #[test]
+    fn programs_without_an_answer_say_why() {
+        let solved = |rows: &[(f64, f64)], diagonal: f64, linear: f64| {
+            let mut conditions = Conditions::new(1);
+            rows.iter().for_each(|(a, b)| conditions.nonnegative(&[*a], *b));
+            conditions.solve(&[diagonal], &[linear])
+        };
+        assert_eq!(solved(&[(1.0, 0.0), (-1.0, -1.0)], 1.0, 0.0), Err(SolverFailure::Infeasible));
+        assert_eq!(solved(&[(1.0, 1.0)], 0.0, 1.0), Err(SolverFailure::Unbounded));
+        assert_eq!(solved(&[(f64::NAN, 1.0)], 1.0, 0.0), Err(SolverFailure::Coefficient));
+        assert_eq!(solved(&[(1.0, f64::INFINITY)], 1.0, 0.0), Err(SolverFailure::Coefficient));
+    }
+}

@@ -59,3 +59,26 @@ pub struct ActiveConstraint {
     /// Its multiplier: the decrease of χ²/2 per unit of its relaxation, ≥ 0.
     pub multiplier: f64,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A constraint is said with its number, its axis, its side and its share.
+    #[test]
+    fn constraints_say_which_they_are() {
+        let (axis, share) = (Vector3::new(1.0, 0.0, -0.5), 0.25);
+        let says = |constraint: Constraint| constraint.to_string();
+        assert_eq!(says(Constraint::Triangle), "I1 + I2 >= I3");
+        assert_eq!(says(Constraint::Rod), "I1 + I2 >= I3 and I1 + I3 >= I2 (a rod)");
+        assert_eq!(says(Constraint::Drag { name: "drag_xx" }), "drag_xx >= 0 (drag takes energy)");
+        assert_eq!(
+            says(Constraint::AtLeast { limit: 2, axis, share }),
+            "limit 2: moment about (1, 0, -0.5) >= 0.25 of the trace"
+        );
+        assert_eq!(
+            says(Constraint::AtMost { limit: 3, axis, share }),
+            "limit 3: moment about (1, 0, -0.5) <= 0.25 of the trace"
+        );
+    }
+}

@@ -102,4 +102,18 @@ mod tests {
             assert!((vectors.transpose() * vectors - Matrix3::identity()).amax() < 1e-15);
         }
     }
+
+    /// Coordinates, pairs and entries are three readings of one tensor of trace 1.
+    #[test]
+    fn a_tensor_has_its_coordinates_back() {
+        let j = Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45);
+        let x = coordinates(&j);
+        assert!((tensor(&x) - j).amax() < 1e-15);
+        assert!((coordinates(&(j + Matrix3::identity())) - x).amax() < 1e-15);
+        let (v, w) = (Vector3::new(0.3, -0.5, 0.7), Vector3::new(-0.2, 0.4, 0.9));
+        assert!((pair(&v, &w).dot(&x) - v.dot(&(trace_free(&x) * w))).abs() < 1e-15);
+        let entries = entries_of_coordinates() * x;
+        let sum = (0..6).fold(Matrix3::zeros(), |sum, k| sum + symmetric(k) * entries[k]);
+        assert!((sum - trace_free(&x)).amax() < 1e-15);
+    }
 }

@@ -26,3 +26,24 @@ impl Dissipation {
         z[self.place] = z[self.place].max(0.0);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Zero is no gain of energy; what is below it is, and is taken off alone.
+    #[test]
+    fn a_coefficient_of_drag_is_zero_or_more() {
+        let mut z = DVector::from_vec(vec![-1e-3, 0.0, -2.0]);
+        let of = |place| Dissipation { place, name: "drag_yy" };
+        assert!(!of(0).allows(&z) && of(1).allows(&z) && !of(2).allows(&z));
+        of(0).clip(&mut z);
+        of(1).clip(&mut z);
+        assert_eq!(z, DVector::from_vec(vec![0.0, 0.0, -2.0]));
+        assert!(of(0).allows(&z));
+        z[0] = 0.5;
+        of(0).clip(&mut z);
+        assert_eq!(z[0], 0.5);
+        assert_eq!(of(0).constraint(), Constraint::Drag { name: "drag_yy" });
+    }
+}

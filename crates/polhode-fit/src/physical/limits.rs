@@ -120,3 +120,52 @@ pub(crate) fn feasible(limits: &[Limit]) -> Result<(), FitError> {
     }
     Err(FitError::Solver(SolverFailure::Limits))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn about_x(at_least: Option<f64>, at_most: Option<f64>) -> Limit {
+        Limit { axis: Vector3::x() * 2.0, at_least, at_most }
+    }
+
+    /// An axis has a direction, and a share is one of the whole; the limit is named by its place.
+    #[test]
+    fn limits_that_are_none_are_refused_by_their_number() {
+        let fine = [about_x(Some(0.0), Some(1.0)), about_x(None, None)];
+        assert_eq!(check_limits(&fine), Ok(()));
+        for value in [-1e-9, 1.0 + 1e-9] {
+            for bad in [about_x(Some(value), None), about_x(None, Some(value))] {
+                let found = check_limits(&[fine[0], bad]);
+                assert_eq!(found, Err(FitError::LimitValue { limit: 2, value }));
+            }
+        }
+        assert!(check_limits(&[about_x(Some(f64::NAN), None)]).is_err());
+        for axis in [Vector3::zeros(), Vector3::new(f64::INFINITY, 0.0, 0.0)] {
+            let found = check_limits(&[fine[0], fine[1], Limit { axis, ..fine[0] }]);
+            assert_eq!(found, Err(FitError::LimitAxis { limit: 3, axis: axis.into() }));
+        }
+    }
+
+    /// Half of what two limits about one axis are apart, or two of three moments are too small, is the least that all must give way;
+    /// alone beyond the law, a limit gives all.
+    #[test]
+    fn a_clash_is_as_large_as_what_all_limits_must_give() {
+        let of = |limits: &[Limit]| match feasible(limits) {
+            Err(FitError::Contradiction(clash)) => *clash,
+            other => panic!("{other:?}"),
+        };
+        let apart = [about_x(Some(0.4), None), about_x(None, Some(0.3))];
+        let Clash { first, second, gap } = of(&apart);
+        assert!((gap - 0.05).abs() < 1e-6, "{gap}");
+        let sides = [side(0, &apart[0], false), side(1, &apart[1], true)];
+        assert!(first != second && sides.contains(&first) && sides.contains(&second), "{first} {second}");
+        let about_y = Limit { axis: Vector3::y(), at_least: None, at_most: Some(0.2) };
+        assert!((of(&[about_x(None, Some(0.2)), about_y]).gap - 0.05).abs() < 1e-6);
+        let alone = of(&[about_x(Some(0.6), None)]);
+        assert!((alone.gap - 0.1).abs() < 1e-6, "{}", alone.gap);
+        assert_eq!(alone.first, side(0, &about_x(Some(0.6), None), false));
+        assert_eq!(alone.second, Constraint::Triangle);
+        assert_eq!(feasible(&[about_x(Some(0.3), Some(0.31))]), Ok(()));
+    }
+}

@@ -349,4 +349,52 @@ mod tests {
         }
         assert!(6 * of_law > trials && 6 * of_limits > trials, "{of_law}, {of_limits}");
     }
+
+    /// Half the squares of the distance fall by a multiplier per unit by which its constraint gives way: of a drag of −0.02 ± 0.02, of a
+    /// moment a twentieth beyond its limit, and of one a fifth beyond the law.
+    #[test]
+    fn multipliers_are_slopes_of_half_the_squares() {
+        let inside = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45)));
+        let centre = DVector::from_iterator(6, core::iter::once(-0.02).chain(inside.iter().copied()));
+        let mut root = DMatrix::identity(6, 6) * 1e3;
+        root[(0, 0)] = 50.0;
+        let of = [Dissipation { place: 0, name: "drag" }];
+        let answer = nearest(&Normal { centre, root }, &[], &of).unwrap();
+        assert!((0.0..1e-12).contains(&answer.others[0]) && (answer.x - inside).norm() < 1e-9);
+        assert_eq!(answer.active.len(), 1);
+        assert_eq!(answer.active[0].constraint, Constraint::Drag { name: "drag" });
+        assert!((answer.active[0].multiplier / 50.0 - 1.0).abs() < 1e-6, "{:?}", answer.active);
+        assert!((answer.pull - 1.0).abs() < 1e-9, "{}", answer.pull);
+
+        // the gradient of a moment has the square 2/3
+        let at_least = Limit { axis: Vector3::x() * 3.0, at_least: Some(0.25), at_most: None };
+        let at_most = Limit { axis: Vector3::y() * 0.1, at_least: None, at_most: Some(0.3) };
+        let flat = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.05, 0.25, 0.7)));
+        for (centre, limits, beyond) in
+            [(inside, &[at_least][..], 0.05), (inside, &[at_most][..], 0.05), (flat, &[][..], 0.2)]
+        {
+            let answer = tensor_nearest(centre, Form::identity() * 100.0, limits).unwrap();
+            let [active] = &answer.active[..] else { panic!("{:?}", answer.active) };
+            assert!((active.multiplier / (1.5e4 * beyond) - 1.0).abs() < 1e-6, "{active:?}");
+            let pull = 100.0 * beyond * 1.5_f64.sqrt();
+            assert!((answer.pull / pull - 1.0).abs() < 1e-9, "{}", answer.pull);
+        }
+    }
+
+    /// The nearest body to moments of which one exceeds the sum of the others by 1: each changes by a third, and what is added stays.
+    #[test]
+    fn a_body_gives_a_third_to_each_moment() {
+        let base = Matrix3::from_diagonal(&Vector3::new(0.5, 0.0, 0.0));
+        let told = |centre: [f64; 6]| Normal {
+            centre: DVector::from_column_slice(&centre),
+            root: DMatrix::identity(6, 6) * 10.0,
+        };
+        let (found, pull) = nearest_bodies(&told([0.5, 1.0, 3.0, 0.0, 0.0, 0.0]), &[(0, base)]).unwrap();
+        let expected = DVector::from_vec(vec![0.5 + 1.0 / 3.0, 4.0 / 3.0, 8.0 / 3.0, 0.0, 0.0, 0.0]);
+        assert!((found - expected).amax() < 1e-9);
+        assert!((pull - 10.0 / 3.0_f64.sqrt()).abs() < 1e-7, "{pull}");
+        let inside = told([0.5, 1.0, 1.5, 0.1, 0.0, -0.1]);
+        let (found, pull) = nearest_bodies(&inside, &[(0, base)]).unwrap();
+        assert!((found - &inside.centre).amax() < 1e-15 && pull == 0.0, "{pull}");
+    }
 }

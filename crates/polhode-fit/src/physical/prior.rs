@@ -235,4 +235,77 @@ mod tests {
         assert!(error.contains("smallest eigenvalue is -1.000e-4"), "{error}");
         assert!(matches!(Prior::relative(-tensor, 0.01).check(), Err(FitError::Setting { .. })));
     }
+
+    /// A prior whose entries depend on each other.
+    fn correlated() -> Prior {
+        let tensor = Matrix3::new(2.0, 0.2, -0.1, 0.2, 3.0, 0.3, -0.1, 0.3, 4.0);
+        let factor = SMatrix::<f64, 6, 6>::from_fn(|i, k| 0.02 / (1.0 + ((3 * i + 2 * k) % 7) as f64));
+        Prior::new(tensor, factor * factor.transpose() + SMatrix::identity() * 1e-4)
+    }
+
+    /// At a given shape the logarithm of the trace is a normal number: by the information about both, with the slope −Λ_xs/Λ_ss and the
+    /// variance 1/Λ_ss.
+    #[test]
+    fn the_size_at_a_given_shape_is_the_conditional_one() {
+        let told = correlated().told().unwrap();
+        let information = told.covariance.try_inverse().unwrap();
+        let x = told.x + Coordinates::new(1e-3, -2e-3, 5e-4, 0.0, 1e-3);
+        let (trace, slope, variance) = told.size(&x);
+        let expected = Coordinates::from_fn(|k, _| -information[(k, 5)] / information[(5, 5)]);
+        assert!((slope - expected).amax() < 1e-8 * (1.0 + expected.amax()));
+        assert!(expected.amax() > 1e-3 && (variance * information[(5, 5)] - 1.0).abs() < 1e-8);
+        assert!((libm::log(trace / 9.0) - expected.dot(&(x - told.x))).abs() < 1e-9);
+        // of the trace itself: the sum of the covariances of the moments
+        let moments = correlated().covariance.fixed_view::<3, 3>(0, 0).sum();
+        assert!((told.size_deviation() / (moments.sqrt() / 9.0) - 1.0).abs() < 1e-9);
+    }
+
+    /// A prior with a size tells one over the trace too: as it grows by a share of itself, the logarithm of the trace falls by that.
+    #[test]
+    fn a_prior_with_a_size_tells_one_over_the_trace() {
+        let told = correlated().told().unwrap();
+        let unit = 4.5;
+        let u = 0.5;
+        let mut map = DMatrix::zeros(6, 6);
+        (0..5).for_each(|k| map[(k, k + 1)] = 1.0);
+        map[(5, 0)] = -1.0 / u;
+        let own = DMatrix::from_fn(6, 6, |i, k| told.covariance[(i, k)]).try_inverse().unwrap();
+        let of_prior = map.transpose() * own * &map;
+        let apart = DVector::from_fn(6, |k, _| if k == 0 { 0.1 * u } else { 1e-3 });
+        let at = DVector::from_fn(6, |k, _| if k == 0 { u } else { told.x[k - 1] });
+        let record = Normal { centre: &at + &apart, root: DMatrix::identity(6, 6) * 200.0 };
+        let (joined, squares, freedom) = told.join(&record, Some((0, unit))).unwrap();
+        let expected = DMatrix::identity(6, 6) * 4e4 + &of_prior;
+        let information = joined.root.transpose() * &joined.root;
+        assert!((information - &expected).amax() < 1e-9 * expected.amax());
+        let step = expected.cholesky().unwrap().solve(&(&of_prior * &apart));
+        assert!((&joined.centre - (&record.centre - step)).amax() < 1e-9);
+        let covariance = DMatrix::identity(6, 6) / 4e4 + of_prior.try_inverse().unwrap();
+        let distance = apart.dot(&covariance.cholesky().unwrap().solve(&apart));
+        assert!((squares / distance - 1.0).abs() < 1e-7 && freedom == 6, "{squares} {distance}");
+        let alone = correlated().shape_only().told().unwrap();
+        let (joined, _, freedom) = alone.join(&record, Some((0, unit))).unwrap();
+        assert!(freedom == 5 && (joined.centre[0] - record.centre[0]).abs() < 1e-12);
+    }
+
+    /// A prior needs a trace whose square is a number, and a covariance that is symmetric to rounding.
+    #[test]
+    fn a_prior_needs_a_size_and_a_symmetric_covariance() {
+        let tensor = Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 2.5));
+        let mut open = tensor;
+        open[(0, 1)] = f64::NAN;
+        for bad in [Matrix3::zeros(), tensor * 1e-170, tensor * 1e170, open] {
+            let found = Prior::relative(bad, 0.01).check();
+            let name = "the trace of the prior tensor";
+            assert!(matches!(found, Err(FitError::Setting { name: of, .. }) if of == name), "{found:?}");
+        }
+        // a billionth of the largest entry, which is 6.25e-4
+        for (apart, is_refused) in [(5e-13, false), (1e-12, true)] {
+            let mut covariance = Prior::relative(tensor, 0.01).covariance;
+            covariance[(0, 1)] += apart;
+            let found = Prior::new(tensor, covariance).check();
+            let is_asymmetric = matches!(found, Err(FitError::PriorCovariance { symmetric: false, .. }));
+            assert!(is_asymmetric == is_refused && found.is_ok() != is_refused, "{found:?}");
+        }
+    }
 }

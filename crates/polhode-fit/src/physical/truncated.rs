@@ -101,4 +101,24 @@ mod tests {
         let centre = listed(coordinates(&Matrix3::from_diagonal(&Vector3::new(0.15, 0.25, 0.6))));
         assert!(spread(&centre, &(DMatrix::identity(5, 5) * 1e-3), &[], &[], &centre).is_none());
     }
+
+    /// Of a mean that lies a standard deviation beyond a limit, on either side: the tail is that of a normal distribution.
+    #[test]
+    fn beyond_a_limit_only_the_tail_is_left() {
+        let centre = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.25, 0.35, 0.4)));
+        let across = pair(&Vector3::z(), &Vector3::z());
+        let sigma = 1e-3;
+        let free = DMatrix::identity(5, 5) * sigma;
+        for side in [1.0, -1.0] {
+            let share = Some(0.4 + side * sigma * across.norm());
+            let (at_least, at_most) = if side > 0.0 { (share, None) } else { (None, share) };
+            let limit = Limit { axis: Vector3::z() * 3.0, at_least, at_most };
+            let answer = listed(centre + across.normalize() * (side * sigma));
+            let moments = spread(&listed(centre), &free, &[limit], &[], &answer).unwrap();
+            let own = listed(across.normalize());
+            // 2 − h as above; on the wrong side it would be 2.29
+            let square = own.dot(&(moments * &own)) / (sigma * sigma);
+            assert!((square / 0.475 - 1.0).abs() < 0.25, "{side}: {square}");
+        }
+    }
 }

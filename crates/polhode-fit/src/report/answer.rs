@@ -65,3 +65,29 @@ pub(crate) fn sigmas(factor: &Form, v: &[Vector3<f64>; 3], moments: &Vector3<f64
 pub(crate) fn shape_of(j: &Matrix3<f64>) -> Result<InertiaShape, FitError> {
     InertiaShape::from_tensor(*j).map_err(|error| FitError::Solver(SolverFailure::Shape(error)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physical::coordinates::ENTRIES;
+
+    /// The covariance of two entries is that of the readings of the tensor along their axes.
+    #[test]
+    fn entries_vary_as_the_readings_along_the_axes() {
+        let factor = Form::from_fn(|i, k| 1e-3 / (1.0 + ((3 * i + 2 * k) % 5) as f64));
+        let covariance = factor * factor.transpose();
+        let found = of_entries(&factor);
+        let reading = |k: usize| {
+            let (a, b) = ENTRIES[k];
+            pair(&Vector3::ith(a, 1.0), &Vector3::ith(b, 1.0))
+        };
+        for k in 0..6 {
+            for l in 0..6 {
+                let expected = reading(k).dot(&(covariance * reading(l)));
+                assert!((found[(k, l)] - expected).abs() < 1e-12 * covariance.amax(), "{k} {l}");
+            }
+        }
+        // the trace is 1 and does not vary
+        assert!(found.fixed_view::<3, 3>(0, 0).sum().abs() < 1e-12 * covariance.amax());
+    }
+}

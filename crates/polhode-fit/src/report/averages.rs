@@ -80,3 +80,58 @@ pub(crate) fn axes(stretches: &[Stretch], variance: f64) -> Vec<AverageAxis> {
         .filter(|a| a.product <= VAGUE)
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::UnitQuaternion;
+
+    fn spin() -> Stretch {
+        let times: Vec<f64> = (0..201).map(|k| 0.05 * f64::from(k)).collect();
+        Stretch::new(times, vec![Vector3::new(0.0, 0.6, -0.8); 201])
+    }
+
+    /// The mean square of eight parts may differ by half of its middle, from 1 to 5/3, and no more.
+    #[test]
+    fn a_steady_rotation_keeps_its_mean_square() {
+        for (square, is_steady) in [(1.66, true), (1.67, false), (0.601, true), (0.599, false)] {
+            let mut rates = vec![Vector3::new(0.0, 1.0, 0.0); 16];
+            rates[14..].fill(Vector3::new(0.0, 0.0, f64::sqrt(square)));
+            let s = Stretch::new((0..16).map(f64::from).collect(), rates);
+            assert_eq!(steady(&s), is_steady, "{square}");
+            assert!(is_steady || axes(&[spin(), s], 0.0).is_empty());
+        }
+    }
+
+    /// A constant rate shows its axis, and of the others across it nothing; the bound is as large as the noise, and has no unit.
+    #[test]
+    fn a_constant_rate_shows_its_axis() {
+        let of = |s: &Stretch, variance: f64| {
+            let found = axes(core::slice::from_ref(s), variance);
+            assert_eq!(found.len(), 1, "{found:?}");
+            found[0]
+        };
+        let noisy = of(&spin(), 1e-6);
+        assert!(noisy.axis.dot(&Vector3::new(0.0, 0.6, -0.8)).abs() > 1.0 - 1e-12);
+        let twice = of(&spin(), 4e-6);
+        assert!(noisy.product > 1e-6 && (twice.product / noisy.product - 2.0).abs() < 1e-3);
+        let s = spin();
+        let times = s.times.iter().map(|t| 0.25 * t).collect();
+        let fast = of(&Stretch::new(times, s.rates.iter().map(|w| w * 4.0).collect()), 16e-6);
+        assert!((fast.product / noisy.product - 1.0).abs() < 1e-9);
+        let turn = UnitQuaternion::from_scaled_axis(Vector3::new(0.3, -0.7, 1.1));
+        let turned = of(&Stretch::new(s.times.clone(), s.rates.iter().map(|w| turn * w).collect()), 1e-6);
+        assert!((turn * noisy.axis).dot(&turned.axis).abs() > 1.0 - 1e-12);
+        assert!((turned.product / noisy.product - 1.0).abs() < 1e-9);
+    }
+
+    /// An axis is said with the products of inertia that it may have.
+    #[test]
+    fn an_axis_is_said_with_its_bound() {
+        let axis = AverageAxis { axis: Vector3::new(0.0, 0.6, -0.8), product: 0.0123 };
+        assert_eq!(
+            axis.to_string(),
+            "(0.0000, -0.6000, 0.8000) is a principal axis if no torque acted, to within products of inertia of 0.0123 of the trace"
+        );
+    }
+}

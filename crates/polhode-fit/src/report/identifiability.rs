@@ -261,4 +261,75 @@ mod tests {
         assert!(of(3).verdict().ends_with("Known: no axis and no ratio, only combinations of them"));
         assert!(of(0).verdict().ends_with("Known: nothing"));
     }
+
+    /// A direction of either sign is one text, whose zeros have no sign.
+    #[test]
+    fn a_direction_is_written_with_its_largest_part_positive() {
+        assert_eq!(direction(&Vector3::new(-0.8, 0.6, -1e-6)), "(0.8000, -0.6000, 0.0000)");
+        assert_eq!(direction(&Vector3::new(0.8, -0.6, 1e-6)), "(0.8000, -0.6000, 0.0000)");
+        assert_eq!(direction(&Vector3::new(6e-5, -4e-5, 1.0)), "(0.0001, 0.0000, 1.0000)");
+    }
+
+    /// An axis of the sensor is named where both other parts vanish to the digits that are shown.
+    #[test]
+    fn an_axis_of_the_sensor_is_named() {
+        let near = |part: f64| [named(&Vector3::new(part, -1.0, 0.0)), named(&Vector3::new(0.0, -part, 1.0))];
+        assert_eq!(near(4e-4), [Some("y"), Some("z")]);
+        assert_eq!(near(6e-4), [None, None]);
+        assert_eq!(named(&Vector3::new(-1.0, 4e-4, 6e-4)), None);
+        assert_eq!(named(&-Vector3::x()), Some("x"));
+        let of = |number| PrincipalAxis { axis: -Vector3::x(), number }.to_string();
+        let text = "(1.0000, 0.0000, 0.0000), x of the sensor";
+        assert_eq!(of(Some(3)), format!("{text} is a principal axis, numbered 3 here"));
+        assert_eq!(of(None), format!("{text}, about which the body spins, is a principal axis"));
+    }
+
+    fn open(null: Vec<Undetermined>, weakest: f64) -> Identifiability {
+        Identifiability {
+            deviations: [1e-4, 1e-4, 1e-4, weakest, 1e-3],
+            rank: 5 - null.len(),
+            null_directions: null,
+            null_tensors: Vec::new(),
+            known: Vec::new(),
+        }
+    }
+
+    /// What is open is said by its axes, one after the other.
+    #[test]
+    fn what_is_open_is_said_by_its_axes() {
+        let ratio = Undetermined::Ratio { low: 1, high: 3 };
+        let axes = Undetermined::Axes { low: 1, high: 2, about: 3 };
+        let known = |axis, number| PrincipalAxis { axis, number: Some(number) };
+        let known = vec![known(Vector3::z(), 1), known(Vector3::new(0.6, 0.8, 0.0), 2)];
+        let both = Identifiability { known, ..open(vec![ratio, axes], 0.2) };
+        assert_eq!(
+            both.verdict(),
+            "3 of 5 numbers are known. the ratio I1/I3 is undetermined; the directions of axes 1 and 2 about axis 3 are \
+             undetermined. Known: (0.0000, 0.0000, 1.0000), z of the sensor is a principal axis, numbered 1 here; \
+             (0.6000, 0.8000, 0.0000) is a principal axis, numbered 2 here"
+        );
+        assert!(!both.complete() && open(Vec::new(), 1e-3).complete());
+    }
+
+    /// A record that lacks a ratio or a direction may be that many times as long, by the square of its deviation, up to twenty times.
+    #[test]
+    fn the_next_record_is_as_long_as_the_square_of_the_deviation() {
+        let ratio = Undetermined::Ratio { low: 1, high: 2 };
+        let axes = Undetermined::Axes { low: 1, high: 2, about: 3 };
+        for null in [ratio, axes] {
+            let of = |weakest| open(vec![null], weakest).next_record();
+            for (weakest, times) in [(0.101, 2), (0.141, 2), (0.142, 3), (0.31, 10), (0.447, 20)] {
+                let expected = format!("all three axes, or record {times} times as long; or give a tensor");
+                assert!(of(weakest).contains(&expected), "{weakest}: {}", of(weakest));
+            }
+            assert!(of(0.448).starts_with("start with rotation about all three axes, with a larger wobble;"));
+        }
+        let of = |null| open(vec![null, ratio], 0.2).next_record();
+        assert!(of(Undetermined::Everything).starts_with("spin the body faster"));
+        assert!(of(Undetermined::Ratios).contains("two or three principal axes at once"));
+        for null in [Undetermined::TransverseRatio, Undetermined::SpinRatio, Undetermined::TransverseAxes] {
+            assert!(of(null).starts_with("record a throw that wobbles"));
+        }
+        assert_eq!(open(Vec::new(), 0.2).next_record(), "");
+    }
 }

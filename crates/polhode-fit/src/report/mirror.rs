@@ -72,4 +72,37 @@ mod tests {
             assert!((sigma / own - 1.0).abs() < 1e-6, "{k}: {sigma:e} {own:e}");
         }
     }
+
+    /// All rates are reversed and nothing else; twice, the record is as it was. What is told of wheels or torques has no mirror.
+    #[test]
+    fn a_record_is_reversed_segment_by_segment() {
+        let of = |source: &str, size: f64| {
+            let rates = (0..3).map(|k| Vector3::new(size, -2.0, f64::from(k))).collect();
+            Segment::new(source, vec![0.0, 0.5, 1.5], rates).unwrap()
+        };
+        let mut record = Record::default();
+        record.segments.extend([of("one", 0.3), of("two", -0.7)]);
+        let other = reversed(&record).unwrap();
+        assert_eq!(other.segments.len(), 2);
+        for (a, b) in record.segments.iter().zip(&other.segments) {
+            assert_eq!((a.source(), a.times()), (b.source(), b.times()));
+            assert!(a.rates().iter().zip(b.rates()).all(|(a, b)| *a == -b));
+        }
+        let back = reversed(&other).unwrap();
+        assert!(back.segments.iter().zip(&record.segments).all(|(a, b)| a.rates() == b.rates()));
+        record.segments.push(of("three", 0.1).with_wheel(vec![Vector3::x(); 3]).unwrap());
+        assert!(reversed(&record).is_none());
+    }
+
+    /// A slender body looks like a flat one in axes of the other hand.
+    #[test]
+    fn the_mirror_of_a_rod_is_flat() {
+        let j = Matrix3::from_diagonal(&Vector3::new(0.02, 0.49, 0.49));
+        let other = mirrored(&j);
+        // a = 0 and b = 0.47/0.49: 1 + b, 1, 1
+        let b = 0.47 / 0.49;
+        let expected = Vector3::new(1.0 + b, 1.0, 1.0) / (3.0 + b);
+        assert!((other.diagonal() - expected).amax() < 1e-12, "{other}");
+        assert!((other.trace() - 1.0).abs() < 1e-15);
+    }
 }

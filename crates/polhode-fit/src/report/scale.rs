@@ -367,4 +367,165 @@ mod tests {
         assert!((both.trace() / (least * least) - 1.0).abs() < 1e-12);
         assert!(of_mean.trace() > 0.0 && of_shape.trace() > 0.0);
     }
+
+    fn example() -> (Matrix3<f64>, Noise) {
+        let j = Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45);
+        (j, Noise { variance: 1e-4, is_in_rates: true })
+    }
+
+    /// The trace follows the shape so that the known quantity stays: by differences.
+    #[test]
+    fn the_slope_of_the_trace_is_that_of_differences() {
+        let (j, noise) = example();
+        let times: Vec<f64> = (0..40).map(|i| 0.1 * f64::from(i)).collect();
+        let rates = times.iter().map(|t| Vector3::new(0.3 + 0.1 * t, 1.0 - 0.1 * t, 0.2 * t)).collect();
+        let stretches = [Stretch::new(times, rates)];
+        let axis = Vector3::new(1.0, -2.0, 0.5);
+        let moment = Known::Moment { axis, value: 0.7 };
+        for known in [Known::Trace(3.0), moment, Known::TwiceEnergy(3.0), Known::Momentum(3.0)] {
+            let of = |j: &Matrix3<f64>| scale_of(known, &stretches, 2.0, j, noise);
+            let (scale, h) = (of(&j), 1e-5);
+            for k in 0..5 {
+                let by = (of(&(j + basis(k) * h)).trace - of(&(j - basis(k) * h)).trace) / (2.0 * h);
+                assert!((by - scale.slope[k]).abs() < 1e-6 * scale.trace, "{known:?} {k}: {by:e}");
+            }
+        }
+    }
+
+    /// A body of constant rate has the size of what is known over the mean, less what noise adds to that where the rates are readings;
+    /// the mean of n readings has the variance (4 σ² |M ω|² + 2 σ⁴ tr M²)/n.
+    #[test]
+    fn the_size_is_what_is_known_over_the_mean() {
+        let (j, noise) = example();
+        let w = Vector3::new(0.3, 1.0, -0.2);
+        let stretches = [Stretch::new((0..10).map(f64::from).collect(), vec![w; 10])];
+        let n = Vector3::new(0.6, 0.8, 0.0);
+        let v = noise.variance;
+        for is_in_rates in [true, false] {
+            let of = |known| scale_of(known, &stretches, 2.0, &j, Noise { is_in_rates, ..noise });
+            let bias = if is_in_rates { v } else { 0.0 };
+            let moment = of(Known::Moment { axis: n * 5.0, value: 0.7 });
+            assert!((moment.trace * n.dot(&(j * n)) / 0.7 - 1.0).abs() < 1e-12 && moment.mean.is_none());
+            assert!(of(Known::Trace(3.0)).trace == 3.0 && of(Known::Trace(3.0)).mean.is_none());
+            for (known, m) in [(Known::TwiceEnergy(3.0), j), (Known::Momentum(3.0), j * j)] {
+                let scale = of(known);
+                let value = w.dot(&(m * w)) - bias * m.trace();
+                let unit = if m == j { 4.0 * value } else { 2.0 * value.sqrt() };
+                assert!((scale.trace * unit / 3.0 - 1.0).abs() < 1e-12, "{known:?}");
+                let mean = scale.mean.unwrap().0;
+                let square = (m * w).norm_squared() - bias * m.norm_squared();
+                let variance = v * (4.0 * square + 2.0 * v * m.norm_squared()) / 10.0;
+                assert!((mean.variance / variance - 1.0).abs() < 1e-12, "{known:?}");
+                assert!((mean.bias - bias * m.trace()).abs() < 1e-18 && mean.samples == 10.0);
+            }
+        }
+    }
+
+    /// Where a record adds nothing to a prior, tensor and covariance are those of the prior.
+    #[test]
+    fn a_prior_alone_gives_itself_back() {
+        let tensor = Matrix3::new(2.0, 0.2, -0.1, 0.2, 3.0, 0.3, -0.1, 0.3, 4.0);
+        let factor = SMatrix::<f64, 6, 6>::from_fn(|i, k| 0.02 / (1.0 + ((3 * i + 2 * k) % 7) as f64));
+        let covariance = factor * factor.transpose() + SMatrix::identity() * 1e-4;
+        let told = crate::physical::prior::Prior::new(tensor, covariance).told().unwrap();
+        let root = told.shape_root();
+        let shape = (root.transpose() * root).try_inverse().unwrap();
+        let (inertia, found) = by_prior(&(tensor / 9.0), &told, &shape, &told.x).unwrap();
+        assert!((inertia.unwrap().tensor() - tensor).amax() < 1e-12);
+        assert!((found.unwrap() - covariance).amax() < 1e-9 * covariance.amax());
+    }
+
+    /// A known size may lie five deviations from that of a prior, and no further.
+    #[test]
+    fn a_prior_of_another_size_is_refused() {
+        let (j, noise) = example();
+        let told = crate::physical::prior::Prior::relative(j * 3.0, 0.01).told().unwrap();
+        let sigma = told.size_deviation();
+        for (deviations, is_refused) in [(4.9, false), (5.1, true), (-4.9, false), (-5.1, true)] {
+            let known = Known::Trace(3.0 * libm::exp(deviations * sigma));
+            let scale = scale_of(known, &[], 1.0, &j, noise);
+            let found = scale.sized(known, Some(&told), &j, &Form::zeros(), 1.0, None);
+            match found {
+                Err(FitError::PriorSize { prior, sigma: of, known }) if is_refused => {
+                    assert!((prior - 3.0).abs() < 1e-12 && (of / (3.0 * sigma) - 1.0).abs() < 1e-12);
+                    assert_eq!(known, scale.trace);
+                }
+                found => assert!(found.is_ok() && !is_refused, "{deviations}"),
+            }
+            assert!(scale.sized(known, None, &j, &Form::zeros(), 1.0, None).is_ok());
+        }
+        for trace in [1e-170, 1e170] {
+            let scale = scale_of(Known::Trace(trace), &[], 1.0, &j, noise);
+            let found = scale.sized(Known::Trace(trace), None, &j, &Form::zeros(), 1.0, None);
+            assert!(matches!(found, Err(FitError::Setting { value, .. }) if value == trace));
+        }
+    }
+
+    /// Whether two segments, the fourth and the sixth of a record, differ that have the means 1 and `larger` with variances of `each`, by noise
+    /// that was enlarged four times, by a walk, by a bias and by a shape that is known to `sigma` and moves them apart by twice of that.
+    fn differ(known: Known, larger: f64, each: [f64; 3], sigma: f64) -> Result<(), FitError> {
+        let at = |segment: usize| Stretch { segment, ..Stretch::new(vec![0.0], vec![Vector3::x()]) };
+        let mut covariance = Form::zeros();
+        covariance[(2, 2)] = sigma * sigma;
+        check_same(known, &[at(3), at(3), at(5)], &covariance, 4.0, |own, first| {
+            let is_first = own[0].segment == 3;
+            assert_eq!((own.len(), first), if is_first { (2, 0) } else { (1, 2) });
+            let mut slope = Coordinates::repeat(0.7);
+            slope[2] = if is_first { 1.0 } else { -1.0 };
+            let mean = Mean {
+                m: Matrix3::identity(),
+                value: if is_first { larger } else { 1.0 },
+                slope,
+                variance: each[0] / 4.0,
+                samples: 1.0,
+                bias: -each[2].sqrt(),
+                lever: Matrix3::identity(),
+                walk: each[1],
+            };
+            Scale { trace: 1.0, slope, mean: Some((mean, 1.0)) }
+        })
+    }
+
+    /// Two means of variance v that are d apart differ where half of d²/(2 v) is more than chance brings; what the shape explains is added to v,
+    /// of each mean the square by which it moves, twice.
+    #[test]
+    fn sizes_differ_beyond_chance() {
+        let most = (0.1 * 0.1 / 4.0) / quantile(1.0, SURE);
+        for (each, shape) in [
+            ([1.0, 0.0, 0.0], 0.0),
+            ([0.0, 1.0, 0.0], 0.0),
+            ([0.0, 0.0, 1.0], 0.0),
+            ([0.25, 0.25, 0.25], 0.25),
+            ([0.1, 0.0, 0.0], 0.9),
+        ] {
+            for (share, is_refused) in [(0.99, true), (1.01, false)] {
+                let parts = each.map(|of| of * most * share);
+                let sigma = (0.5 * shape * most * share).sqrt();
+                let found = differ(Known::TwiceEnergy(1.0), 1.1, parts, sigma);
+                assert_eq!(found.is_err(), is_refused, "{each:?} {shape} {share}: {found:?}");
+            }
+        }
+    }
+
+    /// However sure, energies that differ by three in a thousand are alike, and momenta, of which the mean is a square; a moment is the same
+    /// in all segments.
+    #[test]
+    fn sizes_that_are_alike_are_no_contradiction() {
+        let of = |known, larger| differ(known, larger, [1e-12, 0.0, 0.0], 0.0);
+        assert_eq!(of(Known::TwiceEnergy(1.0), 1.0029), Ok(()));
+        assert_eq!(of(Known::Momentum(1.0), 1.0059), Ok(()));
+        assert_eq!(of(Known::Trace(1.0), 2.0), Ok(()));
+        for (known, larger, quantity, factor) in [
+            (Known::TwiceEnergy(1.0), 1.0031, "the kinetic energy", 1.0031),
+            (Known::TwiceEnergy(1.0), 4.0, "the kinetic energy", 4.0),
+            (Known::Momentum(1.0), 1.0062, "the angular momentum", 1.0062_f64.sqrt()),
+            (Known::Momentum(1.0), 4.0, "the angular momentum", 2.0),
+        ] {
+            let expected = FitError::SizeDiffers { quantity, factor, largest: 3, smallest: 5 };
+            assert_eq!(of(known, larger), Err(expected));
+        }
+        // the smaller one counts as no less than its own deviation
+        let found = differ(Known::TwiceEnergy(1.0), 1e3, [4.0, 0.0, 0.0], 0.0);
+        assert!(matches!(found, Err(FitError::SizeDiffers { factor, .. }) if (factor - 500.0).abs() < 1e-9));
+    }
 }

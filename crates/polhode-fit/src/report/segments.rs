@@ -86,3 +86,46 @@ impl WithoutSegment {
         WithoutSegment { ratios: ratios.map(|r| r.0), sigma_ratios: ratios.map(|r| r.1), shift }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physical::coordinates::coordinates;
+    use crate::signal::covariance::Shape;
+    use nalgebra::Vector3;
+
+    /// Its torque noise becomes that of the body, a third of tr J⁻²/9, and what the others say gets the deviations of enlarged noise and of
+    /// what is added.
+    #[test]
+    fn a_summary_is_completed_by_the_body_and_the_noise() {
+        let j = Matrix3::from_diagonal(&Vector3::new(0.2, 0.3, 0.5));
+        let x = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.25, 0.3, 0.45)));
+        let (covariance, added) = (Form::identity() * 3e-6, Form::identity() * 4e-6);
+        let own = SegmentSummary {
+            segment: 4,
+            samples: 70,
+            noise_sigma: 0.01,
+            torque_noise: 2.0,
+            weight: 0.3,
+            without: None,
+        };
+        let alike = 2.0 * (25.0 + 100.0 / 9.0 + 4.0) / 27.0;
+        for (shape, density) in [(Shape::Moments, 2.0), (Shape::Alike, alike)] {
+            let levels = Levels { shape, ..Levels::WHITE };
+            let others = Some(Others { x, covariance, shift: 1.5 });
+            let found = Summary { own: own.clone(), levels, others }.complete(&j, 2.0, &added);
+            assert!((found.torque_noise / density - 1.0).abs() < 1e-12, "{shape:?}: {}", found.torque_noise);
+            let WithoutSegment { ratios, sigma_ratios, shift } = found.without.unwrap();
+            assert!((ratios[0] - 25.0 / 45.0).abs() < 1e-12 && (ratios[1] - 30.0 / 45.0).abs() < 1e-12);
+            // gradients of moments have the squares 2/3 and the products −1/3
+            for (r, sigma) in ratios.into_iter().zip(sigma_ratios) {
+                let square = 1e-5 * (2.0 + 2.0 * r + 2.0 * r * r) / 3.0 / (0.45 * 0.45);
+                assert!((sigma * sigma / square - 1.0).abs() < 1e-9, "{r} {sigma}");
+            }
+            assert!(shift == 1.5 && (found.segment, found.samples) == (4, 70));
+            assert!(found.noise_sigma == 0.01 && found.weight == 0.3);
+        }
+        let alone = Summary { own, levels: Levels::WHITE, others: None };
+        assert!(alone.complete(&j, 2.0, &added).without.is_none());
+    }
+}

@@ -1,19 +1,25 @@
 //! Numbers and warnings of a report against simulations and differences, and what is said where a number passes its threshold.
 
+use std::sync::OnceLock;
+
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode::record::Record;
 
+use crate::error::FitError;
 use crate::estimator::{fit, fitted};
 use crate::models::equations::Equations;
+use crate::physical::constraint::{ActiveConstraint, Constraint};
 use crate::physical::coordinates::{Coordinates, Form, coordinates, eigen, tensor};
 use crate::report::answer::{Answer, ratios_of, sigmas};
 use crate::report::attitudes::AttitudeFit;
-use crate::report::estimate::{Estimate, Residuals};
+use crate::report::estimate::{Estimate, Method, Residuals};
 use crate::report::identifiability::{Identifiability, Undetermined};
-use crate::report::parts::{Halves, instead};
-use crate::report::torque_free::{InvariantTrend, Whiteness, memory, trends};
+use crate::report::next_step::{Contradiction, NextStep, Origin};
+use crate::report::nuisance::Systematic;
+use crate::report::parts::{Halves, Scatter, instead};
+use crate::report::torque_free::{InvariantTrend, Memory, Whiteness, memory, trends};
 use crate::report::warning::Warning;
 use crate::report::warnings::{Doubts, of_answer, of_likelihood, of_smoothed};
 use crate::settings::Settings;
@@ -23,6 +29,7 @@ use crate::signal::stretch::Stretch;
 use crate::simulate::{Disturbances, Gyroscope, simulate_with};
 use crate::thresholds::poses::DOUBTFUL;
 use crate::thresholds::warnings::{APART, FAR, FEW, UNCERTAIN};
+use crate::verdict::driven::check_driven;
 
 fn body() -> Matrix3<f64> {
     Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45)
@@ -184,8 +191,12 @@ fn deviations_of_the_answer_are_those_of_differences() {
 }
 
 fn clean() -> Estimate {
-    let (times, rates) = rates(&Disturbances::default(), 1e-3, 1200, &mut Random::new(5));
-    fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap()
+    static CLEAN: OnceLock<Estimate> = OnceLock::new();
+    let fitted = || {
+        let (times, rates) = rates(&Disturbances::default(), 1e-3, 1200, &mut Random::new(5));
+        fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap()
+    };
+    CLEAN.get_or_init(fitted).clone()
 }
 
 /// Each number of an answer is warned of just beyond its threshold, by its value, and not before it.
@@ -319,4 +330,168 @@ fn combinations_that_are_open_are_named() {
     let three = [Undetermined::TransverseRatio, Undetermined::SpinRatio, Undetermined::TransverseAxes];
     assert_eq!(pure.null_directions, three);
     assert!(pure.known.len() == 1 && pure.known[0].axis.y.abs() > 0.999 && pure.known[0].number.is_none());
+}
+
+/// A direction is open where its deviation exceeds a tenth of the trace; a record is a pure spin where the rates across the axis have less
+/// than a twentieth of the mean square.
+#[test]
+fn what_is_open_has_a_deviation_of_a_tenth() {
+    let scatter = |middle: f64| Matrix3::from_diagonal(&Vector3::new(0.0, middle, 1.0));
+    for (singular, rank) in [(10.1, 5), (9.9, 4)] {
+        let found = open([1e4, 1e4, 1e4, 1e4, singular], scatter(0.8));
+        assert_eq!((found.rank, found.complete(), found.null_tensors.len()), (rank, rank == 5, 5 - rank));
+        assert!((found.deviations[4] * singular - 1.0).abs() < 1e-12);
+    }
+    let two = [1e4, 1e4, 0.0, 0.0, 0.0];
+    let first = |middle: f64| open(two, scatter(middle)).null_directions[0];
+    let is_pure = |middle: f64| first(middle) == Undetermined::TransverseRatio;
+    assert!(is_pure(0.049) && !is_pure(0.051));
+    assert!(open(two, scatter(0.049)).known[0].axis.z.abs() > 1.0 - 1e-12);
+    // three numbers are too many for a pure spin
+    let three = open([1e4, 1e4, 1e4, 0.0, 0.0], scatter(0.049));
+    assert!(!three.null_directions.contains(&Undetermined::TransverseRatio), "{:?}", three.null_directions);
+}
+
+/// Two open moments of common axes are both ratios; products of two planes are turns about two axes of the body.
+#[test]
+fn open_moments_are_ratios_and_open_products_are_turns() {
+    let flat = Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45));
+    let scatter = Matrix3::from_diagonal(&Vector3::new(1.0, 0.8, 0.6));
+    let of = |singular: [f64; 5]| Identifiability::new(&(singular.into(), Form::identity()), &scatter, &flat);
+    let moments = of([0.0, 0.0, 1e4, 1e4, 1e4]);
+    assert_eq!(moments.null_directions, [Undetermined::Ratios]);
+    let numbers: Vec<_> = moments.known.iter().map(|known| known.number).collect();
+    assert_eq!(numbers, [Some(1), Some(2), Some(3)]);
+    // xy and yz
+    let products = of([1e4, 1e4, 0.0, 1e4, 0.0]);
+    assert_eq!(
+        products.null_directions,
+        [Undetermined::Axes { low: 1, high: 2, about: 3 }, Undetermined::Axes { low: 2, high: 3, about: 1 }]
+    );
+    assert!(products.known.is_empty() && products.rank == 3);
+}
+
+/// The contradiction that says most comes first, and with one a longer record is not advised; what the fit takes out is none.
+#[test]
+fn the_clearest_contradiction_comes_first() {
+    let mut e = clean();
+    e.systematic.clear();
+    e.method = Method::ExactMotion;
+    let mut steps = |warnings: Vec<Warning>| {
+        e.warnings = warnings;
+        e.next_steps()
+    };
+    assert_eq!(steps(Vec::new())[0], NextStep::Longer);
+    let memory = || Warning::Memory(Memory { chi2: 99.0, dof: 27 });
+    let scatter = || Warning::Scatter(Scatter { parts: 8, chi2: 140.0, dof: 35 });
+    let refuted =
+        || Warning::RefutedPrior { what: "offsets", size: 0.05, prior: 1e-3, unit: "rad/s", gain: 120.0 };
+    let found = steps(vec![memory()]);
+    assert!(found[0] == NextStep::FindCause(Contradiction::Residuals) && !found.contains(&NextStep::Longer));
+    let found = steps(vec![memory(), scatter(), memory()]);
+    assert_eq!(found[0], NextStep::FindCause(Contradiction::Parts));
+    let found = steps(vec![scatter(), memory(), refuted()]);
+    let left_out = Contradiction::LeftOut { what: "offsets", origin: Origin::Sensor };
+    assert_eq!(found[0], NextStep::FindCause(left_out));
+    for is_fitted in [true, false] {
+        let first = if is_fitted { NextStep::Longer } else { NextStep::FindCause(Contradiction::Residuals) };
+        assert_eq!(steps(vec![Warning::RateOffset { size: 0.02, gain: 225.0, is_fitted }])[0], first);
+        assert_eq!(steps(vec![Warning::RateScale { scale: -0.05, gain: 60.0, is_fitted }])[0], first);
+    }
+    let found = steps(vec![Warning::CoarseAttitudes { turn: 1.5 }]);
+    assert_eq!(found[..2], [NextStep::Longer, NextStep::MoreOften { turn: 1.5 }]);
+}
+
+/// The error of the sensor that changes a moment by most of its 95 % intervals is named, where that is more than half of one.
+#[test]
+fn the_largest_error_of_the_sensor_is_measured_by_the_intervals() {
+    let mut e = clean();
+    e.sigma_principal = [1e-3, 1e-2, 1e-3];
+    e.method = Method::ExactMotion;
+    let line = |name, principal| Systematic { name, size: 0.01, unit: "rad/s", principal, ratios: [0.0; 2] };
+    e.systematic = vec![
+        line("scale", [1.9e-3, 1e-2, 0.0]),
+        line("offset_x", [1e-3, 2.5e-2, -3e-3]),
+        line("wheel_x", [1.0, 1.0, 1.0]),
+        line("magnet", [1.0, 1.0, 1.0]),
+    ];
+    let found = e.next_steps();
+    let NextStep::Sensor { name, size, unit, times } = found[0] else { panic!("{found:?}") };
+    assert_eq!((name, size, unit), ("offset_x", 0.01, "rad/s"));
+    assert!((times - 3.0 / 1.959_964).abs() < 1e-5, "{times}");
+    e.systematic.remove(1);
+    assert_eq!(e.next_steps()[0], NextStep::Longer);
+    // of equations whose errors of the sensor are not known nothing is said
+    e.systematic.clear();
+    assert_eq!(e.next_steps()[0], NextStep::Longer);
+    for method in [Method::WeakForm, Method::ExactMotionWithWheels] {
+        e.method = method;
+        assert!(!e.next_steps().contains(&NextStep::Longer), "{method:?}");
+    }
+}
+
+/// A combination that is known ten times less well than another asks for another start: the turn or the moment that is known least, in shares
+/// of the trace.
+#[test]
+fn the_weakest_combination_is_the_one_of_the_largest_deviation() {
+    let mut e = clean();
+    // no bound is foreseen where torques or wheels act, which have no mirror
+    e.mirror = None;
+    e.principal = [0.2, 0.35, 0.45];
+    e.sigma_axes = [f64::INFINITY, 0.0, 0.1];
+    e.identifiability.deviations = [1e-4, 2e-4, 2e-4, 2e-4, 1.1e-3];
+    // a turn by 0.1 about axis 3 moves the tensor by √2 · 0.15 · 0.1 = 0.0212
+    for (middle, turn, number) in [(0.0210, true, 3), (0.0214, false, 2)] {
+        e.sigma_principal = [0.02, middle, 0.01];
+        let found = e.next_steps().pop();
+        let Some(NextStep::OtherStart { times, turn: of, number: k, gain: None }) = found else {
+            panic!("{found:?}")
+        };
+        assert!((times - 11.0).abs() < 1e-9 && (of, k) == (turn, number), "{found:?}");
+    }
+    e.identifiability.deviations[4] = 9e-4;
+    assert!(!e.next_steps().iter().any(|step| matches!(step, NextStep::OtherStart { .. })));
+}
+
+/// A body is driven whose momentum grows by half while drag stands at its bound, by a tenth where the law holds the tensor far off.
+#[test]
+fn a_body_that_grows_at_the_bound_of_drag_is_driven() {
+    let mut e = clean();
+    // 10 units of time at 2 rad/s are 5 s
+    let stretches = [Stretch::new(vec![0.0, 10.0], vec![Vector3::x(); 2])];
+    let drag = ActiveConstraint { constraint: Constraint::Drag { name: "drag" }, multiplier: 1.0 };
+    let triangle = ActiveConstraint { constraint: Constraint::Triangle, multiplier: 1.0 };
+    for (active, rate, sigma, pull, is_driven) in [
+        (&drag, 0.11, 0.02, 0.0, true),
+        (&drag, 0.09, 0.01, 0.0, false),
+        (&drag, 0.11, 0.03, 0.0, false),
+        (&triangle, 0.11, 0.02, 0.0, false),
+        (&drag, -0.11, 0.02, 0.0, false),
+        (&drag, 0.021, 0.004, 5.1, true),
+        (&drag, 0.019, 0.001, 5.1, false),
+        (&drag, 0.021, 0.004, 4.9, false),
+    ] {
+        e.active_constraints = vec![active.clone()];
+        e.momentum_trend = Some(InvariantTrend { rate, sigma });
+        e.pull = pull;
+        let expected = FitError::Driven { unexplained: None, growth: rate, pull };
+        let expected = if is_driven { Err(expected) } else { Ok(()) };
+        assert_eq!(check_driven(&e, None, &stretches, 2.0), expected, "{rate} {sigma} {pull}");
+    }
+    e.momentum_trend = None;
+    assert_eq!(check_driven(&e, None, &stretches, 2.0), Ok(()));
+}
+
+/// What changes its sign from one residual to the next has a correlation of one with each after it, in its own component: of two segments of
+/// n with the mean square 1, χ² is 9 · 2 (n − lag) at each lag, and pairs across segments are none.
+#[test]
+fn alternating_residuals_remember_each_lag_alike() {
+    let size = 3.0_f64.sqrt();
+    let alternating: Vec<[f64; 3]> =
+        (0..100).map(|k| [if k % 2 == 0 { size } else { -size }, 0.0, 0.0]).collect();
+    let all = [residuals(alternating.clone()), residuals(alternating)];
+    for (lags, pairs) in [(1, 198.0), (2, 198.0 + 196.0)] {
+        let found = memory(&all, lags).unwrap();
+        assert!(found.dof == 9 * lags && (found.chi2 / (9.0 * pairs) - 1.0).abs() < 1e-12, "{found:?}");
+    }
 }

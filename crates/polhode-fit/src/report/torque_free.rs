@@ -173,4 +173,52 @@ mod tests {
         assert!([0.51, -0.51].into_iter().all(significant));
         assert!(![0.49, -0.49, 0.0].into_iter().any(significant));
     }
+
+    /// Where |ω|² is a straight line in time, energy changes by its slope and momentum by half of that, with the deviations that the noise
+    /// of each sample and the walk by torque noise make: by their double sums.
+    #[test]
+    fn a_straight_line_has_its_slope_and_its_deviation() {
+        let n = Vector3::new(0.6, -0.4, 0.5);
+        let j = Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45);
+        let density = Matrix3::new(3.0, 1.0, 0.0, 1.0, 2.0, 0.5, 0.0, 0.5, 1.0) * 1e-3;
+        let times: Vec<f64> = (0..21).map(f64::from).collect();
+        let rates = times.iter().map(|t| n * (1.0 + 0.02 * (t - 10.0)).sqrt()).collect();
+        let s = Stretch::new(times.clone(), rates);
+        let squares: f64 = times.iter().map(|t| (t - 10.0) * (t - 10.0)).sum();
+        let pairs = times.iter().flat_map(|a| times.iter().map(move |b| (a - 10.0) * (b - 10.0) * a.min(*b)));
+        let walk: f64 = pairs.sum();
+        let of = |value: f64, lever: Vector3<f64>, growth: Vector3<f64>| {
+            let growth = 4.0 * growth.dot(&(density * growth));
+            (4e-4 * lever.norm_squared() * squares + growth * walk).sqrt() / (value * squares)
+        };
+        let (momentum, energy) = trends(core::slice::from_ref(&s), Clone::clone, &j, 1e-4, |_| density);
+        let jn = j * n;
+        let of_momentum = 0.5 * of(jn.norm_squared(), j * jn, jn);
+        for (found, rate, sigma) in [(momentum, 0.01, of_momentum), (energy, 0.02, of(n.dot(&jn), jn, n))] {
+            assert!((found.rate - rate).abs() < 1e-12, "{found:?} {rate}");
+            assert!((found.sigma / sigma - 1.0).abs() < 1e-9, "{found:?} {sigma:e}");
+        }
+        // the same twice beside two samples, of which no slope is told; and twice as fast
+        let short = Stretch::new(vec![0.0, 1.0], vec![n, n * 2.0]);
+        let (_, twice) = trends(&[s.clone(), short, s.clone()], Clone::clone, &j, 1e-4, |_| density);
+        assert!((twice.rate - 0.02).abs() < 1e-12);
+        assert!((twice.sigma * 2.0_f64.sqrt() / energy.sigma - 1.0).abs() < 1e-9);
+        let (_, fast) = trends(&[s], |w| w * 2.0, &j, 1e-4, |_| density);
+        assert!((fast.rate - 0.02).abs() < 1e-12 && (fast.sigma * 2.0 / energy.sigma - 1.0).abs() < 1e-9);
+    }
+
+    /// Residuals without a neighbour, or all zero, have no correlation; of either sign it is significant beyond five deviations.
+    #[test]
+    fn a_correlation_needs_neighbours() {
+        for few in [&[][..], &[1.0, 2.0, 3.0], &[0.0, 0.0, 0.0]] {
+            let found = Whiteness::new([few].into_iter());
+            assert_eq!(found, Whiteness { correlation: 0.0, sigma: 1.0 });
+        }
+        // (1 · 2 + 1 · 3)/(1 + 4 + 1 + 9)
+        let found = Whiteness::new([&[1.0, 0.0, 0.0, 2.0][..], &[0.0, 1.0, 0.0, 0.0, 3.0]].into_iter());
+        assert!((found.correlation - 5.0 / 15.0).abs() < 1e-15, "{found:?}");
+        assert!((found.sigma - 1.0 / 3.0_f64.sqrt()).abs() < 1e-15, "{found:?}");
+        let significant = |correlation| Whiteness { correlation, sigma: 0.1 }.significant();
+        assert!(significant(0.51) && significant(-0.51) && !significant(0.49) && !significant(-0.49));
+    }
 }

@@ -146,3 +146,40 @@ impl Motion {
         Found { likelihood, ..found }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+    use polhode::inertia::Inertia;
+    use polhode::num::Random;
+
+    use crate::simulate::simulate;
+
+    /// Free motion leaves nothing of a record of its body, in its unit, and something of it for another body; where the noise makes half of
+    /// the changes nothing is said.
+    #[test]
+    fn what_is_unexplained_is_what_the_body_does_not_do() {
+        let j = Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 2.6));
+        let times: Vec<f64> = (0..1000).map(|k| 0.02 * f64::from(k)).collect();
+        let (body, start) = (Inertia::from_tensor(j).unwrap(), Vector3::new(0.5, 0.8, -0.4));
+        let rates = simulate(&body, start, &times, 0.0, &mut Random::new(1)).unwrap();
+        let s = [Stretch::new(times, rates)];
+        let motion = Motion::new(&s, 0.0).unwrap();
+        let exact = motion.unexplained(&j).unwrap();
+        assert!((0.0..1e-4).contains(&exact), "{exact:e}");
+        assert!(motion.unexplained_by_torques().unwrap() < 1e-4);
+        // the ratios of its moments are off by 0.4/0.6, 0.2/0.8 and 0.07/0.385 of themselves
+        let other = Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 2.2));
+        let share = motion.unexplained(&other).unwrap();
+        assert!((0.03..0.45).contains(&share), "{share}");
+        // a share of noise is taken off what is left and off what there is
+        let variance = 0.02 / motion.sums.noise_share(1.0);
+        let noisy = Motion::new(&s, variance).unwrap();
+        let expected = (share - 0.02) / 0.98;
+        assert!((noisy.unexplained(&other).unwrap() - expected).abs() < 1e-9);
+        assert_eq!(noisy.unexplained(&j), Some(0.0));
+        assert!(Motion::new(&s, 24.9 * variance).unwrap().unexplained(&j).is_some());
+        assert!(Motion::new(&s, 25.1 * variance).unwrap().unexplained(&j).is_none());
+    }
+}

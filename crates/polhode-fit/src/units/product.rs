@@ -123,3 +123,79 @@ impl fmt::Display for UnitProduct {
 pub(crate) fn alternatives(products: &[UnitProduct]) -> String {
     products.iter().map(UnitProduct::to_string).collect::<Vec<_>>().join(", or ")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn named(read: RateUnit, name: &str) -> Option<f64> {
+        UnitProduct::common(read).iter().find(|product| product.to_string() == name).map(|p| p.factor)
+    }
+
+    /// Both mistakes are named, or the one that is made.
+    #[test]
+    fn products_name_their_mistakes() {
+        let of = |rates, times| UnitProduct { rates, times, factor: 1.0 };
+        let (rate, time) = (["rpm", "deg/s"], ["ms", "s"]);
+        let both = of(rate, time);
+        assert_eq!(both.to_string(), "rates in rpm read as deg/s, and times in ms read as s");
+        assert_eq!(of(["rpm", "rpm"], time).to_string(), "times in ms read as s");
+        assert_eq!(of(rate, ["s", "s"]).to_string(), "rates in rpm read as deg/s");
+        assert_eq!((both.mistakes(), of(rate, ["s", "s"]).mistakes()), (2, 1));
+        assert_eq!((of(["a", "a"], time).mistakes(), of(["a", "a"], ["s", "s"]).mistakes()), (1, 0));
+        let numbered = UnitProduct::numbered(0.01);
+        assert!(numbered.factor == 0.01 && numbered.mistakes() == 1);
+        assert_eq!(
+            alternatives(&[numbered, of(rate, ["s", "s"])]),
+            "times in numbers of samples read as s, or rates in rpm read as deg/s"
+        );
+    }
+
+    /// Each factor is there once, by the fewest mistakes, and none is next to 1.
+    #[test]
+    fn common_products_differ_in_their_factors() {
+        for read in [RateUnit::RadiansPerSecond, RateUnit::DegreesPerSecond, RateUnit::RevolutionsPerMinute] {
+            let products = UnitProduct::common(read);
+            for (k, product) in products.iter().enumerate() {
+                assert!(!(0.5..2.0).contains(&product.factor), "{product}");
+                let mut others = products[..k].iter();
+                assert!(others.all(|other| (product.factor / other.factor - 1.0).abs() > 1e-3), "{product}");
+                assert!(k == 0 || products[k - 1].mistakes() <= product.mistakes(), "{product}");
+            }
+        }
+        // as millidegrees, which is one mistake, and not as degrees in ms
+        let of = |name: &str| named(RateUnit::RadiansPerSecond, name);
+        let one = of("rates in mdeg/s read as rad/s").unwrap();
+        assert!((one * 1e3 / DEGREE - 1.0).abs() < 1e-12);
+        assert_eq!(of("rates in deg/s read as rad/s, and times in ms read as s"), None);
+    }
+
+    /// The factor is rate × time as it seems to be over what was read: of a unit that is named only against others, of rad/s, which may be
+    /// a guess, also in the place of a unit that files name.
+    #[test]
+    fn factors_are_ratios_of_units() {
+        let (radians, degrees, rpm) =
+            (RateUnit::RadiansPerSecond, RateUnit::DegreesPerSecond, RateUnit::RevolutionsPerMinute);
+        for (read, name, factor) in [
+            (radians, "rates in rpm read as rad/s", PI / 30.0),
+            (radians, "rates in rev/s read as rad/s", 2.0 * PI),
+            (radians, "rates in rad/s read as deg/s", 180.0 / PI),
+            (radians, "times in s read as ms", 1e3),
+            (radians, "times in us read as s", 1e-6),
+            (radians, "times in ticks of 1/32768 s read as s", 1.0 / 32768.0),
+            (radians, "rates in counts of 1/131 deg/s read as rad/s", PI / 180.0 / 131.0),
+            (degrees, "rates in rev/s read as deg/s", 360.0),
+            (degrees, "rates in rpm read as deg/s", 6.0),
+            (degrees, "rates in counts of 1/65.5 deg/s read as deg/s", 1.0 / 65.5),
+            (rpm, "rates in deg/s read as rpm", 1.0 / 6.0),
+            (rpm, "rates in rev/s read as rpm", 60.0),
+        ] {
+            let found = named(read, name).unwrap_or(f64::NAN);
+            assert!((found / factor - 1.0).abs() < 1e-12, "{name}: {found}");
+        }
+        assert_eq!(named(radians, "rates in rev/s read as deg/s"), None);
+        for (read, unit) in [(degrees, "deg/s"), (rpm, "rpm")] {
+            assert!(UnitProduct::common(read).iter().all(|product| product.rates[1] == unit));
+        }
+    }
+}

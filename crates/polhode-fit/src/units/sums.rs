@@ -204,4 +204,26 @@ mod tests {
             assert!((weighted.log_determinant - determinant).abs() < 1e-6 * determinant.abs(), "{ratio}");
         }
     }
+
+    /// Of a constant rate no slope is seen, and its products are those of one number: ∫ φ.
+    #[test]
+    fn sums_of_a_constant_rate_are_multiples_of_one() {
+        let w = Vector3::new(0.3, -0.8, 0.5);
+        let stretch = Stretch::new((0..200).map(|k| 0.1 * f64::from(k)).collect(), vec![w; 200]);
+        let sums = Sums::new(&[stretch], 1.0).unwrap();
+        let mut squares = 0.0;
+        for row in sums.own[0].features.chunks_exact(FEATURES) {
+            let all = row[12];
+            squares += all * all;
+            for (k, (a, b)) in ENTRIES.into_iter().enumerate() {
+                assert!((row[3 + k] - all * w[a] * w[b]).abs() < 1e-12, "{k}");
+            }
+            assert!(row[..3].iter().all(|slope| slope.abs() < 1e-9), "{row:?}");
+            assert!((0..3).all(|k| (row[9 + k] - all * w[k]).abs() < 1e-12), "{row:?}");
+        }
+        let [slopes, sizes] = sums.sizes();
+        assert!(slopes < 1e-15 && squares > 0.0);
+        assert!((sizes / (squares * w.norm_squared() * w.norm_squared()) - 1.0).abs() < 1e-12);
+        assert_eq!(sums.rows(), 3 * sums.own[0].tests.count);
+    }
 }

@@ -165,3 +165,19 @@ fn identify(weak: &WeakEstimate, stretches: &[Stretch], variance: f64) -> Option
     let spectrum = (singular / variance.sqrt(), directions);
     Some(Identifiability::new(&spectrum, &scatter_of(stretches), &tensor(&weak.x())))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    /// The mean of ω ωᵀ counts each sample once, in whatever stretch it is.
+    #[test]
+    fn the_scatter_is_the_mean_over_all_samples() {
+        let three = vec![Vector3::x(), Vector3::y() * 2.0, Vector3::new(1.0, 0.0, 1.0)];
+        let one = vec![Vector3::z() * 3.0];
+        let stretches = [Stretch::new(vec![0.0, 1.0, 2.0], three), Stretch::new(vec![0.0], one)];
+        let expected = Matrix3::new(2.0, 0.0, 1.0, 0.0, 4.0, 0.0, 1.0, 0.0, 10.0) / 4.0;
+        assert_eq!(scatter_of(&stretches), expected);
+    }
+}

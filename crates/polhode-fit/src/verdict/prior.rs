@@ -57,3 +57,48 @@ pub(crate) fn check_agreement(
         mirror: None,
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physical::constraint::Constraint;
+    use crate::physical::limits::{Limit, side};
+    use nalgebra::{Matrix3, Vector3};
+
+    /// Five numbers or six exclude each other beyond their own thresholds, and both tensors are told with the trace 1.
+    #[test]
+    fn a_prior_and_a_record_exclude_each_other_beyond_their_threshold() {
+        let tensor = Matrix3::new(2.0, 0.2, -0.1, 0.2, 3.0, 0.3, -0.1, 0.3, 5.0);
+        let prior = Prior::relative(tensor, 0.01).told().unwrap();
+        let x = Coordinates::zeros();
+        for (dof, most) in [(5, EXCLUDED[0]), (6, EXCLUDED[1])] {
+            assert_eq!(check_agreement(&prior, Agreement { chi2: most, dof }, &x), Ok(()));
+            let found = check_agreement(&prior, Agreement { chi2: 1.001 * most, dof }, &x);
+            let Err(FitError::PriorContradicted { prior, record, chi2, dof: of, .. }) = &found else {
+                panic!("{found:?}")
+            };
+            assert!(*chi2 == 1.001 * most && *of == dof);
+            for (found, expected) in prior.iter().zip([0.2, 0.3, 0.5, 0.02, -0.01, 0.03]) {
+                assert!((found - expected).abs() < 1e-14, "{prior:?}");
+            }
+            let third = 1.0 / 3.0;
+            assert_eq!(**record, [third, third, third, 0.0, 0.0, 0.0]);
+        }
+    }
+
+    /// A prior may lie outside of the law by a few of its deviations, and of the limits too; further off, what pulls most is named.
+    #[test]
+    fn a_prior_far_outside_of_law_or_limits_is_refused() {
+        // the deviation of the largest moment is 0.01 √((1 − 0.55)² 0.55² + 0.55² (0.2² + 0.25²)) = 0.0030
+        let of = |largest: f64, limits: Vec<Limit>| {
+            let j = Matrix3::from_diagonal(&Vector3::new(0.2, 0.8 - largest, largest));
+            consistent(&Prior::relative(j, 0.01), &Settings::default().with_limits(limits)).err()
+        };
+        assert!(of(0.505, Vec::new()).is_none() && of(0.45, Vec::new()).is_none());
+        let Some(FitError::PriorOutside { constraint, pull }) = of(0.55, Vec::new()) else { panic!() };
+        assert!(constraint == Constraint::Triangle && pull > OUTSIDE);
+        let limit = Limit { axis: Vector3::x(), at_least: Some(0.25), at_most: None };
+        let Some(FitError::PriorOutside { constraint, .. }) = of(0.45, vec![limit]) else { panic!() };
+        assert_eq!(constraint, side(0, &limit, false));
+    }
+}

@@ -42,3 +42,32 @@ fn steps(stretches: &[Stretch]) -> [f64; 2] {
         if list.is_empty() { 0.0 } else { *list.select_nth_unstable_by(middle, f64::total_cmp).1 }
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    fn stretch(size: f64) -> Stretch {
+        let rates = [5.0, 2.0, 1.0, 9.0].map(|rate| Vector3::new(0.0, -rate * size, 0.0));
+        Stretch::new(vec![0.0, 1.0, 3.0, 6.0], rates.to_vec())
+    }
+
+    /// The middle of the turns 5, 4 and 3 and of the steps 1, 2 and 3; the last rate turns nothing.
+    #[test]
+    fn turns_and_steps_are_medians() {
+        assert_eq!(steps(&[stretch(1.0)]), [4.0, 2.0]);
+        // with a slow stretch beside it: 0, 0, 0, 3, 4, 5
+        assert_eq!(steps(&[stretch(1.0), stretch(0.0)]), [3.0, 2.0]);
+        assert_eq!(steps(&[]), [0.0, 0.0]);
+        assert_eq!(steps(&[Stretch::new(vec![0.0], vec![Vector3::x()])]), [0.0, 0.0]);
+    }
+
+    /// A body that turns by more than half a turn between samples is refused with its step in seconds.
+    #[test]
+    fn half_a_turn_between_samples_is_too_far() {
+        let open = |size: f64| open_units(&Record::default(), &[stretch(size)], None, 4.0);
+        assert_eq!(open(0.785), Ok(None));
+        assert_eq!(open(0.786), Err(FitError::Undersampled { turn: 4.0 * 0.786, step: 0.5 }));
+    }
+}
