@@ -7,7 +7,7 @@ use polhode::record::{Record, Segment};
 
 use crate::carrier::error::CarrierError;
 use crate::carrier::law::{is_held, is_physical};
-use crate::carrier::proof::ProofBody;
+use crate::carrier::proof::{ProofBody, parallel_axis};
 use crate::carrier::records::Attached;
 use crate::carrier::start::{Alone, Start, start};
 use crate::carrier::system::{Part, System};
@@ -273,4 +273,22 @@ fn the_law_is_that_of_the_body_without_its_term() {
     let with_term = (1, 0.1, -symmetric(2) * 0.5);
     assert!(is_physical(&with_term, &flat(0.4)) && !is_physical(&with_term, &flat(0.6)));
     assert_eq!(ENTRIES[2], (2, 2));
+}
+
+/// Masses, places and traces that no body has are refused by name.
+#[test]
+fn what_no_attached_body_has_is_refused_by_name() {
+    let name = |error: CarrierError| {
+        let CarrierError::Setting { name, .. } = error else { panic!("{error}") };
+        name
+    };
+    let refused = |mass, place, carrier| name(parallel_axis(mass, place, carrier).unwrap_err());
+    for bad in [0.0, -1.0, f64::INFINITY] {
+        assert_eq!(refused(bad, Vector3::x(), 1.0), "the mass of the attached body");
+        assert_eq!(refused(1.0, Vector3::x(), bad), "the mass of the carrier");
+    }
+    assert_eq!(refused(1.0, Vector3::new(0.0, f64::NAN, 0.0), 1.0), "the place of the attached body");
+    // two equal masses two apart: each is one from the centre
+    let found = parallel_axis(1.0, Vector3::x() * 2.0, 1.0).unwrap();
+    assert_eq!(found, Matrix3::from_diagonal(&Vector3::new(0.0, 2.0, 2.0)));
 }

@@ -201,3 +201,32 @@ impl Reduced {
         sum.max(0.0) / self.count.max(1) as f64
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Size, rate and scale of a test are those of its sums; without tests least squares give the mean of the priors.
+    #[test]
+    fn sums_give_size_rate_and_scale() {
+        let test = Test {
+            centre: 0.0,
+            slope: Vector3::new(3.0, -6.0, 9.0),
+            value: Vector3::zeros(),
+            square: [1.0, 2.0, 3.0, 9.0, 9.0, 9.0],
+            area: 1.5,
+            input: Vector3::zeros(),
+            noise: 0.25,
+        };
+        assert_eq!((test.size(), test.rate(), test.scale(0.5, 0.0)), (6.0, 2.0, 3.0));
+        let noise = NOISE_DEVIATIONS * NOISE_DEVIATIONS;
+        assert!((test.noise(4.0) / noise - 1.0).abs() < 1e-12);
+        assert!((test.scale(0.5, 4.0) / (9.0 + noise).sqrt() - 1.0).abs() < 1e-12);
+        assert!(test.is_slow(2.02 / SLOW) && !test.is_slow(1.98 / SLOW));
+        assert_eq!(test.residual(&Vector::zeros()), Vector3::new(-1.0, 2.0, -3.0));
+        let (precisions, mean) = (Vector::repeat(4.0), Vector::from_fn(|k, _| k as f64 - 3.0));
+        let normal = Normal::prior(&precisions, &mean);
+        assert!((normal.solve().unwrap() - mean).amax() < 1e-12 && normal.count == 0);
+        assert!((normal.squares - 4.0 * mean.norm_squared()).abs() < 1e-9);
+    }
+}

@@ -73,3 +73,20 @@ fn turned_back(track: &Track, turn: Vector3<f64>, is_of_rates: bool) -> Track {
     }
     back
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is added to the tensor is the square of its own rows of the factor and of the shift.
+    #[test]
+    fn factor_and_shift_add_their_squares() {
+        let spread = DMatrix::from_fn(7, 2, |i, k| (i + 1) as f64 * if k == 0 { 1.0 } else { -2.0 });
+        let moved = DVector::from_fn(7, |i, _| 3.0 - i as f64);
+        let expected = Form::from_fn(|i, k| {
+            let (a, b) = (i as f64, k as f64);
+            5.0 * (a + 1.0) * (b + 1.0) + (3.0 - a) * (3.0 - b)
+        });
+        assert_eq!(added(&spread, &moved), expected);
+    }
+}

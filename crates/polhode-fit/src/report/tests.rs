@@ -495,3 +495,17 @@ fn alternating_residuals_remember_each_lag_alike() {
         assert!(found.dof == 9 * lags && (found.chi2 / (9.0 * pairs) - 1.0).abs() < 1e-12, "{found:?}");
     }
 }
+
+/// Of one it is said that it was left out, of more that they were; residuals of ten thousand times the noise are told as a power of ten.
+#[test]
+fn warnings_count_in_words_that_agree() {
+    let flat = |samples: usize| Warning::Saturated { samples }.to_string();
+    assert_eq!(flat(1), "1 sample at the end of the sensor's range (flat tops) was left out");
+    assert_eq!(flat(2), "2 samples at the end of the sensor's range (flat tops) were left out");
+    let short = |short: usize| Warning::ShortSegments { short, segments: 3 }.to_string();
+    assert_eq!(short(1), "1 of 3 segments was left out as too short for the fit");
+    assert_eq!(short(2), "2 of 3 segments were left out as too short for the fit");
+    let left = |times: f64| Warning::Residuals { times, noise: 0.01 }.to_string();
+    assert!(left(9999.0).starts_with("the residuals are 9999.0 times what the noise of 1.00e-2 rad/s"));
+    assert!(left(1e4).starts_with("the residuals are 1.0e4 times what the noise of 1.00e-2 rad/s"));
+}

@@ -127,3 +127,57 @@ impl Settings {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    /// Each value passes while it is positive and finite, and is refused by its name and number otherwise.
+    #[test]
+    fn values_that_are_not_positive_are_refused_by_their_names() {
+        type Set = fn(f64) -> Settings;
+        let all: [(&str, Set); 9] = [
+            ("the radius", |v| Settings::default().with_radius(v)),
+            ("the noise", |v| Settings::default().with_noise(v)),
+            ("the noise of the attitudes", |v| Settings::default().with_attitude_noise(v)),
+            ("the known quantity", |v| Settings::default().with_known(Known::Trace(v))),
+            ("the known quantity", |v| Settings::default().with_known(Known::Momentum(v))),
+            ("the known quantity", |v| Settings::default().with_known(Known::TwiceEnergy(v))),
+            ("the torque noise", |v| Settings::default().with_torque_noise(TorqueNoise::Given(v))),
+            ("the quantum", |v| Settings::default().with_quantum(v)),
+            ("the length of the axis of the known moment", |v| {
+                let known = Known::Moment { axis: Vector3::y() * v, value: 1.0 };
+                Settings::default().with_known(known)
+            }),
+        ];
+        for (expected, set) in all {
+            assert!(set(1e-3).check().is_ok(), "{expected}");
+            for bad in [0.0, f64::INFINITY] {
+                let found = set(bad).check();
+                let Err(FitError::Setting { name, .. }) = found else { panic!("{expected}: {found:?}") };
+                assert_eq!(name, expected);
+            }
+        }
+        let known = Known::Moment { axis: Vector3::y(), value: -2.5 };
+        let found = Settings::default().with_known(known).check();
+        assert!(matches!(found, Err(FitError::Setting { name: "the known quantity", value: -2.5 })));
+    }
+
+    /// Each deviation of the sensor is refused by its own name.
+    #[test]
+    fn deviations_of_the_sensor_have_their_own_names() {
+        let none = SensorPriors::default();
+        for (expected, sensor) in [
+            ("the deviation of the offset", none.with_offset(-1.0)),
+            ("the deviation of the scale", none.with_scale(-1.0)),
+            ("the deviation of the axis scales", none.with_axis_scales(-1.0)),
+            ("the deviation of the misalignment", none.with_misalignment(-1.0)),
+            ("the deviation of the skew", none.with_skew(-1.0)),
+        ] {
+            let found = Settings::default().with_sensor(sensor).check();
+            let Err(FitError::Setting { name, .. }) = found else { panic!("{expected}: {found:?}") };
+            assert_eq!(name, expected);
+        }
+    }
+}

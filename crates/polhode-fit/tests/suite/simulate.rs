@@ -242,3 +242,24 @@ fn every_setting_of_a_simulation_is_checked_by_its_name() {
         assert!(!refused(&by, &with).1);
     }
 }
+
+/// Rates of another simulation are read with the errors of the same seed; a skew, and another number of rates than times, are refused.
+#[test]
+fn rates_of_another_simulation_are_read_with_the_same_errors() {
+    let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+    let (omega, times) = (Vector3::new(0.3, 1.0, 0.4), grid(2.0, 20));
+    let exact = undisturbed(&body, omega, &times, &Gyroscope::default());
+    // a spike on every sample is the largest share
+    let with = Gyroscope::default().with_noise(0.1).with_offset_walk(0.2).with_scale(0.5);
+    let with = with.with_spikes(1.0).with_spike_size(8.0);
+    let read = with.read(&times, &exact, &mut Random::new(3)).unwrap();
+    assert_eq!(read, undisturbed(&body, omega, &times, &with));
+    let refused = |with: &Gyroscope, rates: &[Vector3<f64>]| {
+        let found = with.read(&times, rates, &mut Random::new(3));
+        let Err(SimulationError::Setting { name, value, .. }) = found else { panic!("{found:?}") };
+        (name, value)
+    };
+    let late = with.clone().with_skew(Vector3::new(0.0, 0.0, -0.25));
+    assert_eq!(refused(&late, &exact), ("a time skew", -0.25));
+    assert_eq!(refused(&with, &exact[1..]), ("the number of rates", 20.0));
+}
