@@ -217,4 +217,13 @@ mod tests {
         let held = priors.map(|prior| Column::new(Scale, prior).at_sphere().prior);
         assert_eq!(held, [Some(0.5 * HELD), Some(HELD), Some(HELD)]);
     }
+
+    /// What is expected of a sensor goes to the units of the fit: offsets over the rate, delays times it, ratios as they are.
+    #[test]
+    fn priors_of_the_sensor_have_the_units_of_the_fit() {
+        let priors = SensorPriors::default().with_offset(2.0).with_scale(3.0).with_axis_scales(5.0);
+        let priors = priors.with_misalignment(7.0).with_skew(9.0);
+        let found: Vec<f64> = sensor_columns(&priors, 4.0).iter().filter_map(|column| column.prior).collect();
+        assert_eq!(found, [0.5, 0.5, 0.5, 3.0, 5.0, 5.0, 5.0, 7.0, 7.0, 7.0, 36.0, 36.0]);
+    }
 }

@@ -87,12 +87,12 @@ mod tests {
     /// A third sample at a quarter of the interval still serves, a nearer one leaves the trapezoid, on either side.
     #[test]
     fn a_neighbour_serves_from_a_quarter_of_the_interval() {
-        let squares = |times: [f64; 3]| weights(&times).iter().zip(times).map(|(w, t)| w * t * t).sum::<f64>();
+        let sum = |times: [f64; 3]| weights(&times).iter().zip(times).map(|(w, t)| w * t * t).sum::<f64>();
         let exact = |end: f64| end * end * end / 3.0;
         for sign in [1.0, -1.0] {
             let of = |end: f64| {
                 let times = [0.0, 1.0, end];
-                squares(if sign > 0.0 { times } else { [-end, -1.0, 0.0] })
+                sum(if sign > 0.0 { times } else { [-end, -1.0, 0.0] })
             };
             assert!((of(1.25) - exact(1.25)).abs() < 1e-14);
             // the trapezoid of t² from 0 to 1 is a half, not a third
