@@ -68,7 +68,8 @@ mod tests {
     fn late() -> Stretch {
         let list = |from: f64| (0..4).map(|k| Vector3::new(from, f64::from(k), -1.0)).collect::<Vec<_>>();
         let inputs = Some(KnownInputs { wheel: list(5.0), torque: list(7.0) });
-        Stretch { inputs, index: 4, segment: 2, start: 9.0, ..Stretch::new(vec![0.0, 1.0, 2.0, 4.0], list(3.0)) }
+        let times = vec![0.0, 1.0, 2.0, 4.0];
+        Stretch { inputs, index: 4, segment: 2, start: 9.0, ..Stretch::new(times, list(3.0)) }
     }
 
     /// The head of a stretch keeps its place in the record, its samples and what acts at them; its weights are its own.

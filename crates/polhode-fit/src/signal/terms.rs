@@ -88,7 +88,8 @@ mod tests {
     /// A turn by ω × B ω is quadratic: half the derivative times ω is the value; B + 1 turns as B does.
     #[test]
     fn the_derivative_of_a_turn_is_that_of_a_square() {
-        let (b, w) = (Matrix3::new(2.0, 1.0, 0.0, 1.0, 3.0, -1.0, 0.0, -1.0, 5.0), Vector3::new(1.0, -2.0, 3.0));
+        let b = Matrix3::new(2.0, 1.0, 0.0, 1.0, 3.0, -1.0, 0.0, -1.0, 5.0);
+        let w = Vector3::new(1.0, -2.0, 3.0);
         assert_eq!(cross_derivative(&b, &w) * w, w.cross(&(b * w)) * 2.0);
         assert_eq!(cross_derivative(&(b + Matrix3::identity()), &w), cross_derivative(&b, &w));
     }
