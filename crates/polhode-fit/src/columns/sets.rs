@@ -101,9 +101,10 @@ pub(crate) fn told_components(stretches: &[Stretch]) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    use nalgebra::Vector3;
+    use nalgebra::{Matrix3, Vector3};
 
     use super::*;
+    use crate::thresholds::errors::HELD;
 
     #[test]
     fn every_axis_has_its_errors_of_the_sensor_once() {
@@ -139,5 +140,90 @@ mod tests {
             // four steps of 2 from 2 to 10
             assert_eq!(sum, Vector3::repeat((t - 2.0) / 2.0));
         }
+    }
+
+    /// A value of the fit goes to SI with the power of the unit rate that its unit has.
+    #[test]
+    fn units_of_columns_tell_their_power_of_the_rate() {
+        let magnet = Magnet { magnet: 0, field: 0, segment: 0 };
+        let walk = Walk { axis: 0, from: 0.0, until: 1.0 };
+        let rows = [
+            (Column::new(Drag, None), "1/s", 4.0),
+            (Column::new(Viscous(1), None), "1/s", 4.0),
+            (Column::new(Quadratic, None), "1/rad", 1.0),
+            (Column::new(magnet, None), "rad/s^2", 16.0),
+            (Column::new(walk, None), "rad/s", 4.0),
+            (Column::new(Skew(1), None), "s", 0.25),
+            (Column::new(Scale, None), "", 1.0),
+        ];
+        for (column, unit, factor) in rows {
+            assert_eq!((column.label().unit, column.label().factor(4.0)), (unit, factor));
+        }
+    }
+
+    /// Drag slows a rate of size 13 by itself, by thirteen times itself, and by its own axis over that moment.
+    #[test]
+    fn drag_slows_in_closed_form() {
+        let w = Vector3::new(3.0, 4.0, 12.0);
+        let inverse = Matrix3::from_diagonal(&Vector3::new(0.5, 0.25, 2.0));
+        let of = |column: Column| column.effect().acceleration(&inverse, &w);
+        assert_eq!(of(Column::new(Drag, None)), Some(-w));
+        assert_eq!(of(Column::new(Quadratic, None)), Some(w * -13.0));
+        assert_eq!(of(Column::new(Viscous(0), None)), Some(Vector3::new(-1.5, 0.0, 0.0)));
+        assert_eq!(of(Column::new(Viscous(2), None)), Some(Vector3::new(0.0, 0.0, -24.0)));
+        assert_eq!(of(Column::new(Scale, None)), None);
+    }
+
+    /// The nine products of magnet and field push by the cross product of their axes, while the body has not turned.
+    #[test]
+    fn a_magnet_pushes_across_its_field() {
+        let torques: Vec<Vector3<f64>> = magnet_columns(&[Stretch::new(vec![0.0], vec![Vector3::zeros()])])
+            .iter()
+            .filter_map(|column| column.effect().torque_at(&Matrix3::identity()))
+            .collect();
+        assert_eq!(torques.len(), 9);
+        for (k, torque) in torques.iter().enumerate() {
+            assert_eq!(*torque, Vector3::ith(k / 3, 1.0).cross(&Vector3::ith(k % 3, 1.0)));
+        }
+    }
+
+    /// The momentum of a wheel is told from the size of the tensor by another axis or a torque beside it.
+    #[test]
+    fn a_lone_wheel_tells_no_component() {
+        let told = |wheel: Vector3<f64>, torque: Vector3<f64>| {
+            let inputs = Some(KnownInputs { wheel: vec![wheel], torque: vec![torque] });
+            told_components(&[Stretch { inputs, ..Stretch::new(vec![0.0], vec![Vector3::zeros()]) }])
+        };
+        let (none, push) = (Vector3::zeros(), Vector3::new(0.0, -1.0, 0.0));
+        assert!(told(Vector3::new(0.0, 0.0, 1.0), none).is_empty());
+        assert_eq!(told(Vector3::new(0.0, 0.0, 1.0), push), [2]);
+        assert_eq!(told(Vector3::new(1.0, 0.0, -1.0), none), [0, 2]);
+        assert!(told(none, push).is_empty());
+    }
+
+    /// Two columns are the same unknown by kind and stretch, not by prior; one of a stretch acts on that alone.
+    #[test]
+    fn columns_are_alike_by_kind_and_stretch() {
+        let column = Column::new(Offset(1), Some(0.5));
+        assert!(column.is_alike(&column.with_prior(None)));
+        assert!(!column.is_alike(&Column::new(Offset(2), Some(0.5))));
+        assert!(!column.is_alike(&column.of_segment(0)));
+        let stretch = Stretch::new(vec![0.0], vec![Vector3::zeros()]);
+        assert!(column.acts_on(&stretch) && column.of_segment(0).acts_on(&stretch));
+        assert!(!column.of_segment(1).acts_on(&stretch));
+        // an offset is left as it is at a sphere, a scale is not
+        assert_eq!(column.at_sphere(), column);
+        let priors = [Some(0.5 * HELD), Some(2.0 * HELD), None];
+        let held = priors.map(|prior| Column::new(Scale, prior).at_sphere().prior);
+        assert_eq!(held, [Some(0.5 * HELD), Some(HELD), Some(HELD)]);
+    }
+
+    /// What is expected of a sensor goes to the units of the fit: offsets over the rate, delays times it, ratios as they are.
+    #[test]
+    fn priors_of_the_sensor_have_the_units_of_the_fit() {
+        let priors = SensorPriors::default().with_offset(2.0).with_scale(3.0).with_axis_scales(5.0);
+        let priors = priors.with_misalignment(7.0).with_skew(9.0);
+        let found: Vec<f64> = sensor_columns(&priors, 4.0).iter().filter_map(|column| column.prior).collect();
+        assert_eq!(found, [0.5, 0.5, 0.5, 3.0, 5.0, 5.0, 5.0, 7.0, 7.0, 7.0, 36.0, 36.0]);
     }
 }

@@ -68,4 +68,35 @@ mod tests {
         let times: Vec<f64> = (0..20).map(|i| 0.5 * f64::from(i)).collect();
         assert!(weights(&times)[4..16].iter().all(|w| (w - 0.5).abs() < 1e-15));
     }
+
+    /// Few samples give the classic rules: the trapezoid, Simpson's, that of three eighths; one sample spans nothing.
+    #[test]
+    fn few_samples_have_the_classic_rules() {
+        let near = |times: &[f64], expected: &[f64]| {
+            let w = weights(times);
+            assert!(w.len() == expected.len(), "{w:?}");
+            assert!(w.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-14), "{w:?} {expected:?}");
+        };
+        near(&[], &[]);
+        near(&[3.0], &[0.0]);
+        near(&[0.0, 2.0], &[1.0, 1.0]);
+        near(&[0.0, 1.0, 2.0], &[1.0 / 3.0, 4.0 / 3.0, 1.0 / 3.0]);
+        near(&[0.0, 1.0, 2.0, 3.0], &[0.375, 1.125, 1.125, 0.375]);
+    }
+
+    /// A third sample at a quarter of the interval still serves, a nearer one leaves the trapezoid, on either side.
+    #[test]
+    fn a_neighbour_serves_from_a_quarter_of_the_interval() {
+        let sum = |times: [f64; 3]| weights(&times).iter().zip(times).map(|(w, t)| w * t * t).sum::<f64>();
+        let exact = |end: f64| end * end * end / 3.0;
+        for sign in [1.0, -1.0] {
+            let of = |end: f64| {
+                let times = [0.0, 1.0, end];
+                sum(if sign > 0.0 { times } else { [-end, -1.0, 0.0] })
+            };
+            assert!((of(1.25) - exact(1.25)).abs() < 1e-14);
+            // the trapezoid of t² from 0 to 1 is a half, not a third
+            assert!((of(1.125) - exact(1.125) - 1.0 / 6.0).abs() < 1e-14);
+        }
+    }
 }

@@ -72,3 +72,36 @@ impl Terms {
         if self.quadratic == 0.0 { own } else { own + self.j * slope(w) * self.quadratic }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Along the rate |ω| ω grows twice as fast as across it, where |ω| is 5; at rest it does not grow.
+    #[test]
+    fn squares_grow_twice_as_fast_along_the_rate() {
+        let (along, across) = (Vector3::new(0.0, 0.0, 5.0), Vector3::new(1.0, 0.0, 0.0));
+        assert_eq!((slope(&along) * along, slope(&along) * across), (along * 10.0, across * 5.0));
+        assert_eq!(slope(&Vector3::zeros()), Matrix3::zeros());
+    }
+
+    /// A turn by ω × B ω is quadratic: half the derivative times ω is the value; B + 1 turns as B does.
+    #[test]
+    fn the_derivative_of_a_turn_is_that_of_a_square() {
+        let b = Matrix3::new(2.0, 1.0, 0.0, 1.0, 3.0, -1.0, 0.0, -1.0, 5.0);
+        let w = Vector3::new(1.0, -2.0, 3.0);
+        assert_eq!(cross_derivative(&b, &w) * w, w.cross(&(b * w)) * 2.0);
+        assert_eq!(cross_derivative(&(b + Matrix3::identity()), &w), cross_derivative(&b, &w));
+    }
+
+    /// Readings lose their offset after the sensor; a wheel has the common factor and that of its own axis.
+    #[test]
+    fn rates_and_wheels_are_linear_in_their_factors() {
+        let of = Terms::at(Matrix3::identity());
+        let (offset, of_wheel) = (Vector3::new(1.0, 2.0, 3.0), Vector3::new(0.0, 1.0, -2.0));
+        let terms = Terms { sensor: of.sensor * 2.0, offset, input: 3.0, of_wheel, ..of };
+        let told = Vector3::new(1.0, 10.0, 100.0);
+        assert_eq!((of.rate(&told), terms.rate(&told)), (told, Vector3::new(1.0, 18.0, 197.0)));
+        assert_eq!((of.wheel(&told), terms.wheel(&told)), (Vector3::zeros(), Vector3::new(3.0, 40.0, 100.0)));
+    }
+}
