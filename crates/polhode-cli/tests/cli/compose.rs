@@ -88,12 +88,31 @@ fn a_link_of_a_model_is_named_behind_a_colon() {
 }
 
 #[test]
+fn a_model_with_one_body_that_can_be_read_and_one_that_cannot_is_refused_unless_one_is_named() {
+    let scratch = Scratch::new("one-of-two");
+    let start = "--omega 0.3,1,0.4 --times 0";
+    let inertial = |xx: &str| {
+        let rest = "ixy='0' ixz='0' iyy='2' iyz='0' izz='2.5'";
+        format!("<inertial><mass value='1'/><inertia ixx='{xx}' {rest}/></inertial>")
+    };
+    let link = |name: &str, xx: &str| format!("<link name='{name}'>{}</link>", inertial(xx));
+    let text = format!("<robot name='r'>{}\n{}</robot>", link("base", "1"), link("arm", "0,02"));
+    let model = scratch.file("arm.urdf", text);
+    let defect = "arm.urdf:2: <inertia>: ixx: '0,02' is not a number";
+    refused(&format!("propagate --body {model} {start}"), &[defect, "FILE:NAME"]);
+    refused(&format!("propagate --body {model}:arm {start}"), &[defect]);
+    assert!(!output(&format!("propagate --body {model}:base {start}")).is_empty());
+}
+
+#[test]
 fn files_without_a_body_are_refused() {
     let scratch = Scratch::new("no-body");
     let start = "--omega 0.3,1,0.4 --times 0";
     let of = |name: &str, text: &str| format!("propagate --body {} {start}", scratch.file(name, text));
     refused(&of("a.json", "{\"mass\": 1}"), &["a.json", "no \"inertia\"", "polhode inertia"]);
     refused(&of("b.json", "{"), &["b.json", "line 1"]);
+    let both = "{\"inertia\": [1,2,3,0,0,0], \"shape\": [[0.2,0,0],[0,0.3,0],[0,0,0.5]]}";
+    refused(&of("both.json", both), &["both.json", "\"inertia\" is no 3 x 3 numbers"]);
     refused(&of("c.json", "{\"inertia\": [[1,0,0],[0,1,0],[0,0,3]]}"), &["c.json", "I1 + I2 >= I3"]);
     refused(&of("d.txt", "1,2,3"), &["d.txt", ".json, .toml, .stl, .obj, .ply, .urdf, .mjcf, .sdf or .xml"]);
     refused(&of("e.toml", "[[part]]\nshape = \"cube\"\n"), &["e.toml:2", "no such shape 'cube'"]);

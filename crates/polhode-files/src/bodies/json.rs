@@ -30,6 +30,9 @@ pub(super) fn tensors(flag: &str, path: &Path) -> Result<Vec<Named>, Error> {
     };
     let each = objects.into_iter().map(|(name, object)| {
         let matrix = |key: &str| serde_json::from_value::<[[f64; 3]; 3]>(object[key].clone()).ok();
+        if !object["inertia"].is_null() && matrix("inertia").is_none() {
+            return Err(refused(&"\"inertia\" is no 3 x 3 numbers"));
+        }
         let entries = match (matrix("inertia"), matrix("shape")) {
             (Some(entries), _) => entries,
             (None, Some(entries)) => {

@@ -57,7 +57,7 @@ fn chosen<'t>(flag: &str, text: &'t str) -> Result<Option<Chosen<'t>>, Error> {
         Some((file, link)) if Path::new(file).is_file() => (Path::new(file), Some(link)),
         _ => return Ok(None),
     };
-    let mut bodies = tensors(flag, path)?;
+    let mut bodies = tensors(flag, path, link)?;
     if let Some(link) = link {
         let namesakes = bodies.iter().filter(|(name, ..)| name == link).count();
         if namesakes > 1 {
@@ -101,8 +101,8 @@ fn ending(path: &Path) -> String {
     path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default()
 }
 
-/// Every body of a file, whose ending tells its kind.
-fn tensors(flag: &str, path: &Path) -> Result<Vec<Named>, Error> {
+/// Every body of a file, whose ending tells its kind; the one that is meant is named by `link`.
+fn tensors(flag: &str, path: &Path, link: Option<&str>) -> Result<Vec<Named>, Error> {
     match ending(path).as_str() {
         "json" => json::tensors(flag, path),
         "toml" => {
@@ -110,7 +110,7 @@ fn tensors(flag: &str, path: &Path) -> Result<Vec<Named>, Error> {
             Ok(vec![(String::new(), parts.body.tensor(), parts.wheels)])
         }
         "stl" | "obj" | "ply" => Ok(vec![(String::new(), form::of_mesh(path)?.tensor(), Vec::new())]),
-        kind @ ("urdf" | "mjcf" | "sdf" | "xml") => links(path, kind),
+        kind @ ("urdf" | "mjcf" | "sdf" | "xml") => links(path, kind, link),
         _ => Err(Error::input(
             flag,
             &path.display().to_string(),
@@ -120,8 +120,8 @@ fn tensors(flag: &str, path: &Path) -> Result<Vec<Named>, Error> {
     }
 }
 
-/// The links of a robot model that state a tensor.
-fn links(path: &Path, kind: &str) -> Result<Vec<Named>, Error> {
+/// The links of a robot model that state a tensor; a defect of the one that is meant, or beside the only one that can be read, is an error.
+fn links(path: &Path, kind: &str, meant: Option<&str>) -> Result<Vec<Named>, Error> {
     let text = model(path)?;
     let language = language(kind, &text);
     let tensor = |body: &Given| {
@@ -136,7 +136,17 @@ fn links(path: &Path, kind: &str) -> Result<Vec<Named>, Error> {
     }
     // a frame without a body, and a link that states no tensor, have none to give
     let bodies = links.iter().filter(|link| !link.massless && link.defect.is_none());
-    Ok(bodies.map(|body| (body.name.clone(), tensor(body), Vec::new())).collect())
+    let bodies: Vec<Named> = bodies.map(|body| (body.name.clone(), tensor(body), Vec::new())).collect();
+    let is_in_question = |link: &&Given| meant.map_or(bodies.len() == 1, |name| link.name == name);
+    let defect = links.iter().filter(is_in_question).find_map(|link| link.defect.as_ref());
+    match (defect, meant) {
+        (Some(defect), Some(_)) => Err(Error::Input(defect.clone())),
+        (Some(defect), None) => {
+            let remedy = "mend it, or name the body that is meant behind a colon, as FILE:NAME";
+            Err(Error::Input(format!("{defect}; {remedy}")))
+        }
+        (None, _) => Ok(bodies),
+    }
 }
 
 fn model(path: &Path) -> Result<String, Error> {
