@@ -35,7 +35,7 @@ pub(super) struct Entry {
 impl Compare {
     /// Every method at every step or tolerance that it takes.
     pub(super) fn entries(&self, span: f64) -> Result<Vec<Entry>, Error> {
-        let mut entries = Vec::new();
+        let (mut entries, mut is_taken) = (Vec::new(), false);
         for name in &self.methods {
             let name = name.trim();
             if name == "exact" {
@@ -64,6 +64,7 @@ impl Compare {
             let given = method.tolerance().filter(|_| name.contains(':'));
             match (&self.tolerances, given) {
                 (Some(Positives(tolerances)), None) => {
+                    is_taken = true;
                     for &tolerance in tolerances {
                         let method = method.with_tolerance(tolerance).map_err(|error| match error {
                             ToleranceError::OutOfRange { method, range, .. } => {
@@ -93,11 +94,17 @@ impl Compare {
                 "leave it out, or add a method that takes steps",
             ));
         }
-        if let (Some(Positives(tolerances)), true) =
-            (&self.tolerances, entries.iter().all(|entry| entry.step.is_some()))
-        {
-            let rule = "none of the methods chooses its steps";
-            let remedy = format!("leave it out, or take one of {}", adaptive());
+        if let (Some(Positives(tolerances)), false) = (&self.tolerances, is_taken) {
+            let (rule, remedy) = match entries.iter().all(|entry| entry.step.is_some()) {
+                true => (
+                    "none of the methods chooses its steps",
+                    format!("leave it out, or take one of {}", adaptive()),
+                ),
+                false => (
+                    "each method that chooses its steps has a tolerance behind its name",
+                    "leave it out, or name a method without one".to_string(),
+                ),
+            };
             let value: Vec<String> = tolerances.iter().map(|tolerance| format!("{tolerance:e}")).collect();
             return Err(Error::input("--tolerances", &value.join(","), rule, &remedy));
         }

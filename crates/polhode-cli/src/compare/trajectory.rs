@@ -137,6 +137,10 @@ impl Trajectory {
                 break;
             }
         }
+        if let (None, Some(first)) = (off.at, self.rows.first()) {
+            let rule = format!("the true motion is known until t = {}", short(start_time + known));
+            return Err(Error::input(&self.name, &short(first.t), &rule, "give rows before that"));
+        }
         Ok(off)
     }
 
