@@ -328,7 +328,7 @@ pub(super) const MODELS: [&str; 7] = ["torque", "gain", "share", "I1/I3", "I2/I3
 /// What they say, in words.
 pub(super) fn about_models(e: &Estimate) -> String {
     let deviations = match e.torque.is_chosen {
-        true => "the answer's deviations include their spread, in proportion to their shares",
+        true => "the answer's deviations include their spread, by their shares",
         false => "the answer's deviations are those of the torque that was asked for",
     };
     let what = match e.reading_errors.is_empty() {
