@@ -156,7 +156,7 @@ pub struct Estimate {
     /// The torque that the fit reckons with.
     pub torque: FittedTorque,
     /// Each model of the torque beside it; of a likelihood on the exact motion those that it has. Where the fit has chosen the model, the deviations
-    /// of the answer include how far apart these are, in proportion to their shares.
+    /// of the answer include how far apart these are, each by its share, and by at least a fifth unless that is below a thousandth.
     pub models: Vec<ModelFit>,
     /// What errors of the sensor, and of the momentum of wheels as it is told, make of the record in the place of a torque; of rates alone.
     pub reading_errors: Vec<ErrorFit>,
