@@ -94,6 +94,7 @@ pub(crate) struct Motion {
 impl Motion {
     pub(crate) fn run(&self) -> Result<(), Error> {
         self.start.check_angles(false, false)?;
+        self.body.check_size(self.wheels.is_any())?;
         let (body, of_file) = self.body.free()?;
         let body = self
             .wheels

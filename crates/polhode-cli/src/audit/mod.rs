@@ -154,7 +154,7 @@ impl Audit {
         let body = match (&golden, &self.body) {
             (Some(golden), _) => Some(self.forces.act_on(golden.body.clone(), None)?),
             (None, Some(body)) => {
-                body.check_size(self.forces.is_any(), self.forces.is_sized() || self.wheels.is_any())?;
+                body.check_size(self.forces.is_sized() || self.wheels.is_any())?;
                 let own = body.own_orbit().map(|(orbit, _)| orbit);
                 let (body, of_file) = body.heavy(self.forces.weight_moment)?;
                 wheels = self.wheels.all(of_file);

@@ -1,5 +1,7 @@
 //! The flags of what the fit reckons with: torques, the sensor, and what gives the absolute size.
 
+use std::sync::OnceLock;
+
 use clap::{Args, ValueEnum};
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::Inertia;
@@ -7,7 +9,7 @@ use polhode_files::error::Error;
 use polhode_files::numbers::{list, number, numbers, positive};
 use polhode_fit::{Estimate, Known, Prior, SensorPriors, TorqueModel};
 
-use crate::flags::body::described;
+use crate::flags::body::{check_size, described};
 
 /// The torque models of the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -97,12 +99,21 @@ pub(super) struct KnownArguments {
     /// Moment about an axis, kg m^2
     #[arg(long, value_name = "nx,ny,nz,I", value_parser = numbers::<4>, allow_hyphen_values = true)]
     moment: Option<[f64; 4]>,
+    /// That of --body, read once: its file may have remarks.
+    #[arg(skip)]
+    read: OnceLock<Inertia>,
 }
 
 impl KnownArguments {
     /// The body that `--body` names.
     pub(super) fn body(&self) -> Result<Option<Inertia>, Error> {
-        self.body.as_deref().map(|text| Ok(described(text)?.inertia)).transpose()
+        let Some(text) = &self.body else { return Ok(None) };
+        if let Some(known) = self.read.get() {
+            return Ok(Some(known.clone()));
+        }
+        check_size(text)?;
+        let inertia = described(text)?.inertia;
+        Ok(Some(self.read.get_or_init(|| inertia).clone()))
     }
 
     /// That the moments of --body are those of the record's mirror, where they are.
@@ -118,8 +129,8 @@ impl KnownArguments {
     }
 
     pub(super) fn known(&self) -> Result<Option<Known>, Error> {
-        if let Some(text) = &self.body {
-            return Ok(Some(Known::Trace(described(text)?.inertia.tensor().trace())));
+        if let Some(body) = self.body()? {
+            return Ok(Some(Known::Trace(body.tensor().trace())));
         }
         let moment = |[x, y, z, value]: [f64; 4]| Known::Moment { axis: Vector3::new(x, y, z), value };
         Ok(self

@@ -21,7 +21,7 @@ pub(crate) struct BodyArguments {
     /// Tensor entries in body axes, I_xy = -sum m x y; or all nine, by rows
     #[arg(long, value_name = "Ixx,Iyy,Izz,Ixy,Ixz,Iyz", value_parser = tensor, allow_hyphen_values = true)]
     inertia: Option<Matrix3<f64>>,
-    /// Body of the catalogue, see `polhode bodies`; or a file: JSON of `polhode inertia` or `polhode fit`, TOML of parts, URDF, MJCF or SDF, with :LINK where it has several; a mesh, STL, OBJ or PLY, of density 1 kg/m^3, where no force acts
+    /// Body of the catalogue, see `polhode bodies`; or a file: JSON of `polhode inertia` or `polhode fit`, TOML of parts, URDF, MJCF or SDF, with :LINK where it has several; a mesh, STL, OBJ or PLY, of 1 kg/m^3, where no torque or wheel acts
     #[arg(long, value_name = "NAME|FILE[:LINK]")]
     body: Option<String>,
 }
@@ -54,13 +54,26 @@ impl Described {
     }
 }
 
-/// Warns where a torque, drag, a weight or a wheel acts on a body of which the catalogue has no moments but their ratios.
-pub(crate) fn warn_of_ratios(name: &str) {
+/// Refuses a mesh, which has no mass, and warns of moments of which the catalogue has the ratios alone: where their size counts, as under a
+/// torque, drag, a weight or a wheel.
+pub(crate) fn check_size(name: &str) -> Result<(), Error> {
+    if bodies::is_mesh(name) {
+        let rule = "a mesh file tells no mass, and here the size of the inertia counts";
+        let remedy = "write a TOML file with the mesh as a [[part]] with its mass";
+        return Err(Error::input("--body", name, rule, remedy));
+    }
     if catalogue::body(name).is_some_and(|body| body.unit == "ratio") {
         warn(&format!(
-            "{name}: the catalogue has ratios of moments, which are taken as kg m^2: a torque, drag, weight or wheel acts as on a body of that size"
+            "{name}: the catalogue has ratios of moments, which are taken as kg m^2, and their size counts"
         ));
     }
+    Ok(())
+}
+
+/// Says which density the mesh of a `file` has.
+pub(crate) fn note_density(file: &str) {
+    let file = visible(file);
+    tell("note", &format!("{file}: density 1 kg/m^3 is taken, as a mesh file tells no mass"));
 }
 
 /// The body that `--body` names: of the catalogue, or of a file.
@@ -137,17 +150,9 @@ impl BodyArguments {
         self.named().filter(|text| bodies::is_mesh(text))
     }
 
-    /// Refuses a mesh, which has no mass, where a force acts; warns of ratios of moments where what acts `is_sized`, as in N m.
-    pub(crate) fn check_size(&self, is_force: bool, is_sized: bool) -> Result<(), Error> {
-        if let (Some(file), true) = (self.mesh(), is_force) {
-            let rule = "a mesh file tells no mass, and a force acts on one";
-            let remedy = "write a TOML file with the mesh as a [[part]] with its mass";
-            return Err(Error::input("--body", file, rule, remedy));
-        }
-        if is_sized {
-            self.named().into_iter().for_each(warn_of_ratios);
-        }
-        Ok(())
+    /// [`check_size`] of what `--body` names, where what acts `is_sized`, as in N m; the gravity gradient acts in proportion to the inertia.
+    pub(crate) fn check_size(&self, is_sized: bool) -> Result<(), Error> {
+        self.named().filter(|_| is_sized).map_or(Ok(()), check_size)
     }
 
     /// What a title calls the body.

@@ -34,7 +34,7 @@ pub(crate) struct MotionArguments {
 impl MotionArguments {
     /// The body with all that acts on it, of a motion that starts at the time `t`, s.
     pub(crate) fn body(&self, t: f64) -> Result<Body, Error> {
-        self.body.check_size(self.forces.is_any(), self.forces.is_sized() || self.wheels.is_any())?;
+        self.body.check_size(self.forces.is_sized() || self.wheels.is_any())?;
         let own = self.body.own_orbit().map(|(orbit, _)| orbit);
         let (body, of_file) = self.body.heavy(self.forces.weight_moment)?;
         let body = self.forces.act_on(body, own)?;

@@ -8,9 +8,8 @@ use polhode::rotation::{CelestialFrame, EulerSequence, Quat, Vec3};
 use polhode_files::error::{Error, tell, warn};
 use polhode_files::instant::seconds_in;
 use polhode_files::numbers::{number, numbers, quaternion, turn};
-use polhode_files::text::visible;
 
-use crate::flags::body::{BodyArguments, PublishedStart};
+use crate::flags::body::{BodyArguments, PublishedStart, note_density};
 use crate::flags::tumbling::TumblingArguments;
 
 /// Attitude and spin at the start.
@@ -174,10 +173,7 @@ impl StartArguments {
     /// Says what the attitude refers to where it is that of the catalogue, and which density a mesh has.
     pub(crate) fn note(&self, body: &BodyArguments) {
         if let Some(file) = body.mesh() {
-            tell(
-                "note",
-                &format!("{}: density 1 kg/m^3 is taken, as a mesh file tells no mass", visible(file)),
-            );
+            note_density(file);
         }
         if let Some(published) = body.published_start().filter(|_| !self.has_attitude()) {
             let turned = self.to_frame.map(|to| format!("; turned to {}", to.name()));

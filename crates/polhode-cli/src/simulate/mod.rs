@@ -98,7 +98,7 @@ fn jitter(text: &str) -> Result<f64, String> {
 impl Simulate {
     pub(crate) fn run(&self) -> Result<(), Error> {
         let is_sized = self.disturbances.is_sized() || self.wheels.is_any();
-        self.body.check_size(is_sized, is_sized)?;
+        self.body.check_size(is_sized)?;
         let (body, of_file) = self.body.free()?;
         let wheels = self.wheels.all(of_file);
         let published = self.body.published_start().map(|start| start.omega);

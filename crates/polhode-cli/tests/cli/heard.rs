@@ -338,8 +338,30 @@ fn a_torque_needs_the_mass_of_a_mesh() {
         assert!(answer.code == 0 && answer.err.contains("ratios of moments"), "{flags}: {answer:?}");
     }
     refused(&format!("audit {record} --body {mesh} --torque-body 0.1,0,0"), &says);
+    let wheel = "--wheel 0,0,1,1e-3@100";
+    for line in [
+        format!("propagate --body {mesh} --omega 1,2,0.5 {wheel} --times 1"),
+        format!("motion --body {mesh} --omega 1,2,0.5 {wheel}"),
+        format!("audit {record} --body {mesh} {wheel}"),
+    ] {
+        refused(&line, &says);
+    }
+    let rates = written(&scratch, "rates.csv", "t,omega", "t,wx (rad/s),wy (rad/s),wz (rad/s)");
+    let sized = run(&format!("fit {rates} --body {mesh}"));
+    assert!(sized.code == 2 && sized.err.contains(says[1]), "{sized:?}");
     // what acts in proportion to the body needs no mass
     for body in [mesh.as_str(), "racket"] {
         output(&format!("{line} --body {body} --relative-drag 0.2"));
     }
+    let twice =
+        scratch.file("twice.obj", "v 0 0 0\nv 4 0 0\nv 0 2 0\nv 0 0 6\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    let moved = |mesh: &str| -> Vec<f64> {
+        let orbit = "--gravity-gradient 0.7 --method kick-drift@srkn-6b --step 0.1";
+        let line = format!("propagate --body {mesh} --omega 1,2,0.5 {orbit} --times 5 --fields q,omega");
+        let answer = run(&line);
+        assert_eq!(answer.code, 0, "{answer:?}");
+        answer.out.lines().nth(1).unwrap().split(',').map(|cell| cell.parse().unwrap()).collect()
+    };
+    let (one, other) = (moved(&mesh), moved(&twice));
+    assert!(one.len() == 7 && one.iter().zip(&other).all(|(a, b)| (a - b).abs() < 1e-9), "{one:?} {other:?}");
 }

@@ -8,13 +8,14 @@ use polhode::catalogue;
 use polhode::flow::TumblingElements;
 use polhode::inertia::Inertia;
 use polhode::rotation::{Quat, Vec3};
+use polhode_files::bodies::is_mesh;
 use polhode_files::error::{Error, tell};
 use polhode_files::instant::{Epoch, date, time_scale};
 use polhode_files::toml_file::Section;
 use polhode_files::wheel;
 
 use super::{Acting, elements};
-use crate::flags::body::{Described, described, warn_of_ratios};
+use crate::flags::body::{Described, check_size, described, note_density};
 use crate::flags::force::{Forces, NO_ORBIT, conic, plane, table};
 use crate::flags::start::{Factor, angle_unit, rate_unit};
 
@@ -130,8 +131,14 @@ impl Nominal {
             elements,
             epoch,
         };
-        if nominal.acting.is_sized() {
-            body.text("body")?.into_iter().for_each(warn_of_ratios);
+        if let Some(name) = body.text("body")? {
+            let beside = beside(body, name);
+            let file: &str = if is_mesh(&beside) { &beside } else { name };
+            if nominal.acting.is_sized() {
+                check_size(file).map_err(|error| of_body(body, &error))?;
+            } else if is_mesh(file) {
+                note_density(file);
+            }
         }
         if let Some(inertia) = &nominal.inertia {
             nominal.check(body, force, start, inertia)?;
@@ -183,16 +190,23 @@ fn inertia(body: &Section<'_>, key: &str) -> Result<Described, Error> {
         return Inertia::from_tensor(tensor).map(Described::alone).map_err(|error| refused(&error));
     }
     let name = body.text("body")?.unwrap_or_default();
-    // a file is looked for beside the specification
-    let beside = body.file.path.parent().unwrap_or(Path::new("")).join(name);
+    let beside = beside(body, name);
     let is_known = catalogue::body(name).or_else(|| catalogue::top(name)).is_some();
-    let found = if is_known { described(name) } else { described(&beside.display().to_string()) };
-    found.or_else(|error| if is_known || beside.exists() { Err(error) } else { described(name) }).map_err(
-        |error| {
-            let message = error.to_string();
-            refused(&message.strip_prefix("--body: ").unwrap_or(&message))
-        },
-    )
+    let found = if is_known { described(name) } else { described(&beside) };
+    let is_here = is_known || Path::new(&beside).exists();
+    let found = found.or_else(|error| if is_here { Err(error) } else { described(name) });
+    found.map_err(|error| of_body(body, &error))
+}
+
+/// A file is looked for beside the specification.
+fn beside(body: &Section<'_>, name: &str) -> String {
+    body.file.path.parent().unwrap_or(Path::new("")).join(name).display().to_string()
+}
+
+/// What is wrong with the body that the key `body` names.
+fn of_body(body: &Section<'_>, error: &Error) -> Error {
+    let message = error.to_string();
+    body.at("body", message.strip_prefix("--body: ").unwrap_or(&message))
 }
 
 /// The wheels of every member: those of the body's file and of `wheels` in `[body]`.

@@ -116,6 +116,27 @@ fn specifications_are_refused_with_line_value_and_law() {
     assert_eq!(scratch.names(), ["spec.toml"]);
 }
 
+/// As of one body: a mesh file tells no mass.
+#[test]
+fn a_torque_or_a_wheel_on_a_mesh_is_refused() {
+    let scratch = Scratch::new("ensemble-mesh");
+    scratch.file("corner.obj", "v 0 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 3\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    let mesh = EXACT.replace("moments = [1.0, 2.0, 2.5]", "body = \"corner.obj\"");
+    for (from, to) in [
+        ("[run]", "[force]\ntorque_body = [0, 0, 0.1]\n[run]\nmethod = \"rk4\"\nstep = 0.5"),
+        ("[start]", "wheels = [{axis = [0, 0, 1], inertia = 1e-3, speed = \"100rpm\"}]\n[start]"),
+    ] {
+        scratch.file("spec.toml", mesh.replace(from, to));
+        let told = refusal(&scratch, "ensemble spec.toml --out out");
+        let says = "error: spec.toml:2: key 'body': 'corner.obj': a mesh file tells no mass, and here";
+        assert!(told.contains(says), "{told}");
+    }
+    scratch.file("spec.toml", mesh);
+    let answer = polhode(&words("ensemble spec.toml --out out"), &scratch.0);
+    let note = "note: corner.obj: density 1 kg/m^3 is taken, as a mesh file tells no mass\n";
+    assert_eq!((answer.code, answer.err.as_str()), (0, note));
+}
+
 #[test]
 fn files_of_members_are_refused_with_line_and_law() {
     let scratch = Scratch::new("ensemble-members");
