@@ -57,7 +57,7 @@ pub(crate) struct Simulate {
     /// Scatter of the sample times, as a fraction of DT; below 1
     #[arg(long, value_name = "FRACTION", value_parser = jitter, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Record")]
     jitter: f64,
-    /// Scatter of the true times, as a fraction of DT, where the record has the regular times
+    /// Scatter of the true times about those of the record, as a fraction of DT; below 1 together with --jitter
     #[arg(long, value_name = "FRACTION", value_parser = jitter, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Record")]
     hidden_jitter: f64,
     /// Number of tosses, each a motion of its own of duration T
@@ -115,6 +115,16 @@ impl Simulate {
                  too, or leave these errors out"
                     .into(),
             ));
+        }
+        let scatter = self.jitter + self.hidden_jitter;
+        if scatter >= 1.0 {
+            let rule = format!(
+                "with --jitter {} the true times scatter over {} DT, and samples must keep their order",
+                rounded(self.jitter),
+                rounded(scatter)
+            );
+            let remedy = "give fractions whose sum is below 1";
+            return Err(Error::input("--hidden-jitter", &rounded(self.hidden_jitter), &rule, remedy));
         }
         let mut random = Random::new(self.seed);
         let grid: Vec<f64> =

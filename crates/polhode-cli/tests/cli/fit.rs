@@ -325,6 +325,8 @@ fn unusable_input_is_refused_by_file_line_and_column() {
         ("--drag 0,-1,0", ["'--drag <dx,dy,dz>'", "-1.0 would drive the body"]),
         ("--spikes 2,5", ["'--spikes <FRACTION,SIZE>'", "a fraction from 0 to 1"]),
         ("--hidden-jitter -1", ["'--hidden-jitter <FRACTION>'", "keep their order"]),
+        ("--jitter 0.75 --hidden-jitter 0.5", ["--hidden-jitter: '0.5': with --jitter 0.75", "over 1.25 DT"]),
+        ("--jitter 0.5 --hidden-jitter 0.5", ["--hidden-jitter: '0.5'", "must keep their order; give"]),
         ("--tosses 0", ["'--tosses <N>'", "0"]),
         ("--tosses 100000", ["--tosses: '100000'", "51 samples each"]),
         ("--pause 0", ["'--pause <P>'", "not positive"]),
