@@ -117,6 +117,9 @@ struct Written {
     /// Which no form of the output has.
     #[serde(default)]
     wheels: Option<Vec<serde_json::Value>>,
+    /// Of the fit that found it.
+    #[serde(default)]
+    warnings: Vec<String>,
 }
 
 /// From the JSON that this command writes: an object, or an array of them.
@@ -137,6 +140,10 @@ pub fn from_json(path: &Path, text: &str) -> Result<Vec<Given>, Error> {
             "{}: the wheels of the body are left out of the output; copy the key \"wheels\" into it to keep them",
             visible(&path.display().to_string())
         ));
+    }
+    for warning in written.iter().flat_map(|body| &body.warnings) {
+        let name = path.display().to_string();
+        warn(&format!("{}: the fit warns: {}", visible(&name), visible(warning)));
     }
     let given = |written: Written| Given {
         name: written.name,

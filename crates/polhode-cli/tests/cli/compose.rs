@@ -29,8 +29,10 @@ fn a_body_of_inertia_goes_into_every_command() {
     let fitted = file("fitted.json");
     let answer = run(&format!("fit {record} --body {json} --out {fitted}"));
     assert_eq!(answer.code, 0, "{}", answer.err);
-    let text = output(&format!("propagate --body {fitted} --omega 0.3,1,0.4 --times 0 --fields energy"));
-    let energy: f64 = text.lines().nth(1).unwrap().parse().unwrap();
+    // its warnings, if it has any, are told again
+    let moved = run(&format!("propagate --body {fitted} --omega 0.3,1,0.4 --times 0 --fields energy"));
+    assert_eq!(moved.code, 0, "{}", moved.err);
+    let energy: f64 = moved.out.lines().nth(1).unwrap().parse().unwrap();
     let expected: f64 =
         output(&format!("propagate --body {json} --omega 0.3,1,0.4 --times 0 --fields energy"))
             .lines()
@@ -44,6 +46,46 @@ fn a_body_of_inertia_goes_into_every_command() {
     assert_eq!(run(&format!("fit {record} --out {shape}")).code, 0);
     let moved = run(&format!("motion --body {shape} --omega 0.3,1,0.4"));
     assert!(moved.code == 0 && moved.err.contains("up to a factor"), "{}", moved.err);
+}
+
+#[test]
+fn what_a_fit_warned_of_is_told_once_wherever_its_tensor_is_the_body() {
+    let scratch = Scratch::new("compose-warnings");
+    let start = "--omega 0.3,1,0.4";
+    let tensor = "\"inertia\": [[1,0,0],[0,2,0],[0,0,2.5]]";
+    let fit = scratch.file("fit.json", format!("{{{tensor}, \"warnings\": [\"one\", \"two\\nlines\"]}}"));
+    let told = |body: &str, warnings: [&str; 2]| {
+        let line = |warning: &str| format!("warning: --body: {body}: the fit warns: {warning}\n");
+        warnings.map(line).concat()
+    };
+    let page = scratch.0.join("page.html").display().to_string();
+    for line in [
+        format!("propagate --body {fit} {start} --times 1"),
+        format!("motion --body {fit} {start}"),
+        format!("show --body {fit} {start} --until 1 --out {page}"),
+    ] {
+        let answer = run(&line);
+        assert_eq!((answer.code, answer.err), (0, told(&fit, ["one", "two\\nlines"])), "{line}");
+    }
+    // also where the body gives the size of a fit, and where its tensor is read to be written again
+    let record = scratch.file("record.csv", "");
+    let spin = "--omega 0.3,5,0.4 --until 20 --every 0.01 --noise 1e-4";
+    output(&format!("simulate --moments 1,2,2.5 {spin} --out {record}"));
+    for line in [format!("fit {record} --body {fit}"), format!("inertia json {fit}")] {
+        let answer = run(&line);
+        assert_eq!(answer.err.matches("the fit warns: one\n").count(), 1, "{line}: {answer:?}");
+    }
+    // of a joint fit those of its records too, whichever body is taken
+    let text = format!(
+        "{{\"carrier\": {{{tensor}}}, \"object\": {{{tensor}}}, \"warnings\": [\"apart\"], \
+         \"records\": [{{\"attached\": \"carrier\", \"warnings\": [\"noisy\"]}}]}}"
+    );
+    let joint = scratch.file("joint.json", text);
+    let answer = run(&format!("motion --body {joint}:object {start}"));
+    let expected = told(&format!("{joint} of 'object'"), ["carrier: noisy", "apart"]);
+    assert_eq!((answer.code, answer.err), (0, expected));
+    let other = scratch.file("other.json", format!("{{{tensor}, \"warnings\": [3]}}"));
+    refused(&format!("motion --body {other} {start}"), &["other.json: \"warnings\" is no list of texts"]);
 }
 
 #[test]

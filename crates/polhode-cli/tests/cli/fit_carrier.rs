@@ -69,7 +69,12 @@ fn carrier_and_object_are_absolute_by_a_proof_body() {
     for of in ["carrier", "object_itself"] {
         let entry = |(i, k): (usize, usize)| found[of]["inertia"][i][k].to_string();
         let entries = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)].map(entry).join(",");
-        let motion = |body: &str| output(&format!("motion {body} --omega 1,2,3 --format json"));
+        // warnings of the fit are told again
+        let motion = |body: &str| {
+            let answer = run(&format!("motion {body} --omega 1,2,3 --format json"));
+            assert_eq!(answer.code, 0, "{answer:?}");
+            answer.out
+        };
         assert_eq!(motion(&format!("--body {file}:{of}")), motion(&format!("--inertia={entries}")));
     }
     refused(

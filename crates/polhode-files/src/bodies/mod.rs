@@ -10,7 +10,7 @@ use nalgebra::Matrix3;
 use polhode::body::WheelAtStart;
 use polhode::inertia::Inertia;
 
-use crate::error::Error;
+use crate::error::{Error, warn};
 use crate::given::Given;
 pub use crate::look::{Look, Piece};
 use crate::read;
@@ -19,8 +19,9 @@ use crate::text::visible;
 pub use form::{Form, form};
 pub use parts::parts;
 
-/// Name and tensor of a body in the axes of its frame, about its centre of mass, kg m², and its wheels; the name may be empty.
-type Named = (String, Matrix3<f64>, Vec<WheelAtStart>);
+/// Name and tensor of a body in the axes of its frame, about its centre of mass, kg m², its wheels, and what its file remarks on it; the
+/// name may be empty.
+type Named = (String, Matrix3<f64>, Vec<WheelAtStart>, Vec<String>);
 
 /// The body that a text names.
 struct Chosen<'t> {
@@ -28,19 +29,21 @@ struct Chosen<'t> {
     name: String,
     tensor: Matrix3<f64>,
     wheels: Vec<WheelAtStart>,
+    remarks: Vec<String>,
 }
 
 /// The inertia of the body that `text` names, as FILE or FILE:LINK, and the wheels that the file gives it; `None` where there is no such
-/// file. Messages begin with `flag`. A mesh has a density of 1 kg/m³.
+/// file. Messages begin with `flag`; what a fit warned of is told again. A mesh has a density of 1 kg/m³.
 ///
 /// # Errors
 /// A file that cannot be read, that has no such body or several to choose from, or whose tensor no body has.
 pub fn inertia(flag: &str, text: &str) -> Result<Option<(Inertia, Vec<WheelAtStart>)>, Error> {
-    let Some(Chosen { path, name, tensor, wheels }) = chosen(flag, text)? else { return Ok(None) };
+    let Some(Chosen { path, name, tensor, wheels, remarks }) = chosen(flag, text)? else { return Ok(None) };
     let of = if name.is_empty() { name } else { format!(" of '{}'", visible(&name)) };
     let inertia = Inertia::from_tensor(tensor);
     let inertia =
         inertia.map_err(|error| Error::Input(format!("{flag}: {}{of}: {error}", path.display())))?;
+    remarks.iter().for_each(|remark| warn(&format!("{flag}: {}{of}: {remark}", path.display())));
     Ok(Some((inertia, wheels)))
 }
 
@@ -92,8 +95,8 @@ fn chosen<'t>(flag: &str, text: &'t str) -> Result<Option<Chosen<'t>>, Error> {
             ),
         });
     };
-    let (name, tensor, wheels) = bodies.swap_remove(chosen);
-    Ok(Some(Chosen { path, name, tensor, wheels }))
+    let (name, tensor, wheels, remarks) = bodies.swap_remove(chosen);
+    Ok(Some(Chosen { path, name, tensor, wheels, remarks }))
 }
 
 /// The ending of a file in small letters.
@@ -107,9 +110,11 @@ fn tensors(flag: &str, path: &Path, link: Option<&str>) -> Result<Vec<Named>, Er
         "json" => json::tensors(flag, path),
         "toml" => {
             let parts = parts::read(path)?;
-            Ok(vec![(String::new(), parts.body.tensor(), parts.wheels)])
+            Ok(vec![(String::new(), parts.body.tensor(), parts.wheels, Vec::new())])
         }
-        "stl" | "obj" | "ply" => Ok(vec![(String::new(), form::of_mesh(path)?.tensor(), Vec::new())]),
+        "stl" | "obj" | "ply" => {
+            Ok(vec![(String::new(), form::of_mesh(path)?.tensor(), Vec::new(), Vec::new())])
+        }
         kind @ ("urdf" | "mjcf" | "sdf" | "xml") => links(path, kind, link),
         _ => Err(Error::input(
             flag,
@@ -136,7 +141,8 @@ fn links(path: &Path, kind: &str, meant: Option<&str>) -> Result<Vec<Named>, Err
     }
     // a frame without a body, and a link that states no tensor, have none to give
     let bodies = links.iter().filter(|link| !link.massless && link.defect.is_none());
-    let bodies: Vec<Named> = bodies.map(|body| (body.name.clone(), tensor(body), Vec::new())).collect();
+    let bodies: Vec<Named> =
+        bodies.map(|body| (body.name.clone(), tensor(body), Vec::new(), Vec::new())).collect();
     let is_in_question = |link: &&Given| meant.map_or(bodies.len() == 1, |name| link.name == name);
     let defect = links.iter().filter(is_in_question).find_map(|link| link.defect.as_ref());
     match (defect, meant) {
