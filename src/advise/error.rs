@@ -27,6 +27,12 @@ pub enum AdviseError {
         /// What was asked for, rad.
         attitude_error: f64,
     },
+    /// An energy error of a motion that does not conserve energy.
+    #[error(
+        "what acts on the body, or the motor of a wheel, does not conserve its energy, and the error of it has no meaning; leave the \
+         demand on it out"
+    )]
+    NotConserved,
     /// The start is not usable.
     #[error(transparent)]
     State(#[from] StateError),

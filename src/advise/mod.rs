@@ -25,7 +25,7 @@ pub use progress::{Progress, Stage};
 
 use std::time::Instant;
 
-use crate::body::{Body, State};
+use crate::body::{Body, Conserved, State};
 use calibration::Calibration;
 use reference::Reference;
 
@@ -100,8 +100,8 @@ impl Demand {
 /// are measured: where two methods are equally quick it may differ from call to call.
 ///
 /// # Errors
-/// A demand that is not positive, or below what the digits of the start allow; a body at rest; forces whose motion has no
-/// reference; a demand that no candidate meets, or none within the budget: with the nearest.
+/// A demand that is not positive, or below what the digits of the start allow; an energy error where energy is not conserved; a body
+/// at rest; forces whose motion has no reference; a demand that no candidate meets, or none within the budget: with the nearest.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -147,6 +147,9 @@ pub fn advise_telling(
 ) -> Result<Advice, AdviseError> {
     let begun = Instant::now();
     demand.check()?;
+    if demand.energy_error.is_some() && !body.conserved().contains(&Conserved::Energy) {
+        return Err(AdviseError::NotConserved);
+    }
     let start = body.enter(start)?.to_f64();
     let mut follow = |done| heed(&Progress::new(&Stage::Motion, done, None));
     let reference = Reference::new(body, start, demand, &mut follow)?;

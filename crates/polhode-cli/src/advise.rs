@@ -131,8 +131,14 @@ impl Advise {
                 short(self.start_time + time)
             ));
         }
-        if !advice.best.whole_time && actual.is_none() {
-            warn("the error over the whole time was not seen but extrapolated; --check runs it");
+        match (advice.best.whole_time, actual, self.energy_error) {
+            (false, None, _) => {
+                warn("the error over the whole time was not seen but extrapolated; --check runs it");
+            }
+            (false, Some(_), Some(_)) => {
+                warn("the energy error was not seen but extrapolated; --check is of the attitude alone");
+            }
+            _ => {}
         }
         match actual.filter(|error| *error > self.attitude_error) {
             Some(error) => Err(Error::Failed(format!(
@@ -301,6 +307,7 @@ fn told(error: AdviseError) -> Error {
         }
         AdviseError::AtRest | AdviseError::State(_) => "--omega",
         AdviseError::Budget { .. } => "--budget",
+        AdviseError::NotConserved => "--energy-error",
         AdviseError::NoCandidate => "--exclude",
         _ => "advise",
     };

@@ -143,7 +143,8 @@ impl Advice {
 /// rad, and its step or tolerance: found by running the methods on the body itself.
 ///
 /// The start is that of `FreeMotion`. `energy_error`: largest relative error of the energy; `budget`: largest processor time, s;
-/// `exclude`: names of methods that are not wanted; `check`: whether the advice is run to the end and compared with the motion.
+/// `exclude`: names of methods that are not wanted; `check`: whether the advice is run to the end and its attitude compared with
+/// the motion; the energy error stays the predicted one.
 /// `progress` is called as `progress(stage, done, seconds)`: what is done, which part of it, and about how long all of it takes.
 ///
 /// >>> import polhode
@@ -207,8 +208,14 @@ pub(crate) fn advise(
             ),
         )?;
     }
-    if !found.best.whole_time && actual_error.is_none() {
-        warn(py, "the error over the whole time was not seen but extrapolated; check=True runs it")?;
+    match (found.best.whole_time, actual_error, energy_error) {
+        (false, None, _) => {
+            warn(py, "the error over the whole time was not seen but extrapolated; check=True runs it")?;
+        }
+        (false, Some(_), Some(_)) => {
+            warn(py, "the energy error was not seen but extrapolated; check=True is of the attitude alone")?;
+        }
+        _ => {}
     }
     Ok(Advice { found, actual_error })
 }

@@ -51,6 +51,10 @@ fn what_cannot_be_advised_is_refused_with_flag_value_and_remedy() {
         ("--until 10 --attitude-error 1e-6 --exclude exact --budget 1e-12", ["--budget: ", "within 1e-12 s"]),
         ("--until 10 --attitude-error 1e-6 --exclude rk5", ["--exclude: ", "rk5"]),
         ("--until -1 --attitude-error 1e-6", ["--until", "is not positive"]),
+        (
+            "--until 10 --attitude-error 1e-6 --energy-error 1e-6 --drag 0.1",
+            ["--energy-error: ", "does not conserve its energy"],
+        ),
     ] {
         refused(&format!("advise {BODY} {flags}"), &says);
     }
