@@ -12,6 +12,9 @@ use polhode_pages::output::Output;
 use super::model::Model;
 use super::{Form, Inertia, output, repair, summary};
 
+/// Elements that are named of a model without links.
+const SHOWN: usize = 5;
+
 /// Examines the models that `command` names.
 ///
 /// # Errors
@@ -24,7 +27,11 @@ pub(super) fn run(command: &Inertia, language: Language) -> Result<(), Error> {
         let text = read(Path::new(path), &format!("name a file for {}", command.shape))?;
         let links = models::read(language, Path::new(path), &text, command.root.as_deref())?;
         if links.is_empty() {
-            warn(&format!("{path}: no link in it; nothing to examine"));
+            let named = models::named_elements(Path::new(path), &text)?;
+            let few = named.iter().take(SHOWN).map(String::as_str).collect::<Vec<_>>().join(", ");
+            let more = if named.len() > SHOWN { ", ..." } else { "" };
+            let held = if few.is_empty() { few } else { format!(", but {few}{more}") };
+            warn(&format!("{path}: no link in it{held}; nothing to examine"));
         }
         let links = twins::paired(links);
         let links: Vec<Examined> = links.into_iter().map(|link| Examined::link(link, point)).collect();

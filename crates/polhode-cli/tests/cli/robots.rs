@@ -115,6 +115,22 @@ fn a_defect_of_a_link_is_the_row_of_that_link() {
 }
 
 #[test]
+fn a_world_without_links_is_told_by_what_it_holds() {
+    let scratch = Scratch::new("models-world");
+    let world = |inside: &str| format!("<sdf version='1.9'><world name='w'>\n{inside}\n</world></sdf>");
+    scratch.file("sun.sdf", world("<light name='sun' type='directional'><intensity>1</intensity></light>"));
+    let sun = scratch.run("sdf sun.sdf");
+    let says = "warning: sun.sdf: no link in it, but <world> 'w', <light> 'sun'; nothing to examine\n";
+    assert_eq!((sun.code, sun.err.as_str()), (0, says));
+    // what an include holds is not known
+    scratch.file("include.sdf", world("<include><uri>model://sun</uri></include>"));
+    let include = scratch.run("sdf include.sdf --format csv");
+    let says = "include model://sun: include.sdf:2: <include>: the included model is not read; put its links \
+                into this file, or leave the include out if it has none, as a light\n";
+    assert!(include.code == 1 && include.err.contains(says), "{include:?}");
+}
+
+#[test]
 fn a_repaired_copy_differs_by_its_tensors_alone() {
     let scratch = Scratch::new("repair");
     scratch.file("links.urdf", LINKS);

@@ -111,6 +111,20 @@ pub(crate) fn with_namesakes(
     })
 }
 
+/// The elements of a model that have a name, as `<light> 'sun'`, in the order of the file.
+///
+/// # Errors
+/// Text that is no XML.
+pub fn named_elements(path: &Path, text: &str) -> Result<Vec<String>, Error> {
+    let document = Element::parse(path, text)?;
+    let all = document.all();
+    let named = all.iter().filter_map(|element| {
+        let name = element.attribute("name")?;
+        Some(visible(&format!("<{}> '{name}'", element.tag)).into_owned())
+    });
+    Ok(named.collect())
+}
+
 /// What a link says of its inertia, before it is examined.
 fn link(name: &str, element: &Element, stated: Result<Option<Given>, String>) -> Given {
     let place = Some(element.place());

@@ -31,7 +31,10 @@ fn collect(element: &Element, scope: &str, scoped: bool, found: &mut Vec<Given>)
             "include" if matches!(element.tag.as_str(), "sdf" | "world" | "model") => {
                 let uri = child.child("uri").and_then(|uri| uri.text.as_ref());
                 let uri = uri.map_or("", |uri| uri.text.trim());
-                let defect = child.error("the included model is not read; put its links into this file");
+                let defect = child.error(
+                    "the included model is not read; put its links into this file, or leave the include \
+                     out if it has none, as a light",
+                );
                 found.push(link(&format!("{scope}include {uri}"), child, Err(defect)));
             }
             _ => collect(child, scope, scoped, found),
