@@ -7,7 +7,7 @@ use polhode_files::ReadOptions;
 use polhode_files::error::Error;
 use polhode_files::trajectory::FoundTrajectory;
 
-use crate::flags::attitude::AttitudeArguments;
+use crate::flags::attitude::{AttitudeArguments, check_used};
 use crate::flags::table::{TableArguments, rate_unit};
 
 /// What is claimed of the convention, and where the columns stand.
@@ -62,20 +62,19 @@ impl ReadingArguments {
         self.table.check_times(&found.read_as)?;
         let has = |of: fn(&Trajectory) -> bool| found.bodies.iter().any(|(_, rows)| of(rows));
         let frame = |axes: Axes| String::from(if axes == Axes::Body { "body" } else { "space" });
-        let of_angles = self.attitude.given_of_angles();
         let of_momentum = self.momentum_frame.map(|axes| ("--momentum-frame", frame(axes)));
         let of_rates = self.omega_frame.map(|axes| ("--omega-frame", frame(axes)));
+        let of_rates = of_rates.or_else(|| self.rate_unit.map(|unit| ("--rate-unit", unit.to_string())));
+        let has_quaternions = has(|rows| matches!(rows.attitude, Some(Attitudes::Quaternions(_))));
         let has_angles = has(|rows| matches!(rows.attitude, Some(Attitudes::Angles(_))));
         for (flag, is_used, what) in [
-            (of_angles, has_angles, "a triple of Euler angles"),
+            (self.attitude.given_of_order(), has_quaternions, "a quaternion"),
+            (self.attitude.given_of_direction(), has(|rows| rows.attitude.is_some()), "an attitude"),
+            (self.attitude.given_of_angles(), has_angles, "a triple of Euler angles"),
             (of_momentum, has(|rows| rows.momentum.is_some()), "an angular momentum"),
             (of_rates, has(|rows| rows.rates.is_some()), "an angular velocity"),
         ] {
-            if let Some((flag, value)) = flag.filter(|_| !is_used) {
-                let rule = format!("says how {what} is written, and the record has none");
-                let remedy = "leave it out, or name the columns by --columns";
-                return Err(Error::input(flag, &value, &rule, remedy));
-            }
+            check_used(flag, is_used, what)?;
         }
         Ok(())
     }

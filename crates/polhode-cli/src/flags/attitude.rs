@@ -1,4 +1,4 @@
-//! In which convention attitudes are written: `audit` and `fit`; and what every command asks of rotation matrices.
+//! In which convention attitudes are written: `audit` and `fit`; and what every command asks of such flags and of rotation matrices.
 
 use clap::{Args, ValueEnum};
 use nalgebra::Matrix3;
@@ -65,6 +65,18 @@ fn sequence(text: &str) -> Result<(EulerSequence, Turns), String> {
         .map_err(|error: polhode::rotation::EulerSequenceError| error.to_string())
 }
 
+/// The flag of the place of the scalar, and its value.
+pub(crate) fn of_order(order: Option<Order>) -> Option<(&'static str, String)> {
+    order.map(|order| ("--quaternion", typed(order)))
+}
+
+/// Refuses a flag and its value that say how `what` is written, where nothing that was read has one.
+pub(crate) fn check_used(flag: Option<(&str, String)>, is_used: bool, what: &str) -> Result<(), Error> {
+    let Some((flag, value)) = flag.filter(|_| !is_used) else { return Ok(()) };
+    let rule = format!("says how {what} is written, and none is read");
+    Err(Error::input(flag, &value, &rule, "leave it out, or name the columns by --columns"))
+}
+
 /// How far a rotation matrix may be from one.
 const ORTHOGONAL: f64 = 0.1;
 
@@ -92,9 +104,17 @@ pub(crate) fn check_matrices(matrices: &[[f64; 9]], times: &[f64], name: &str) -
 impl AttitudeArguments {
     /// The first flag that is given, and its value.
     pub(crate) fn given(&self) -> Option<(&'static str, String)> {
-        let order = self.quaternion.map(|order| ("--quaternion", typed(order)));
-        let direction = self.attitude.map(|to| ("--attitude", typed(to)));
-        order.or(direction).or_else(|| self.given_of_angles())
+        self.given_of_order().or_else(|| self.given_of_direction()).or_else(|| self.given_of_angles())
+    }
+
+    /// The flag of the place of the scalar, and its value.
+    pub(crate) fn given_of_order(&self) -> Option<(&'static str, String)> {
+        of_order(self.quaternion)
+    }
+
+    /// The flag of the direction, and its value.
+    pub(crate) fn given_of_direction(&self) -> Option<(&'static str, String)> {
+        self.attitude.map(|to| ("--attitude", typed(to)))
     }
 
     /// The first flag of Euler angles that is given, and its value.

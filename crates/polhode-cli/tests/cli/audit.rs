@@ -466,6 +466,13 @@ fn flags_of_columns_that_a_record_has_not_are_refused() {
     let poses = table("t,q_w,q_x,q_y,q_z", rows("").iter().map(|r| r[..5].to_vec()));
     let poses = scratch.file("poses.csv", poses);
     refused(&format!("audit {poses} {BODY} --omega-frame body"), &["--omega-frame: 'body'", "leave it out"]);
+    refused(&format!("audit {poses} {BODY} --rate-unit rpm"), &["--rate-unit: 'rpm'", "leave it out"]);
+    let rates = table("t,wx,wy,wz", rows("").iter().map(|r| vec![r[0], r[5], r[6], r[7]]));
+    let rates = scratch.file("rates.csv", rates);
+    for (flag, value) in [("--quaternion", "xyzw"), ("--attitude", "space-to-body")] {
+        let says = format!("{flag}: '{value}'");
+        refused(&format!("audit {rates} {BODY} {flag} {value}"), &[says.as_str(), "and none is read"]);
+    }
 }
 
 #[test]
