@@ -19,6 +19,7 @@ use polhode_pages::figure::{Curve, Figure};
 use polhode_pages::output::Output;
 use polhode_pages::table::{Format, Table};
 
+use crate::flags::attitude::{check_used, of_order};
 use crate::flags::motion::MotionArguments;
 use crate::flags::table::{Order, TableArguments};
 use crate::plot::Picture;
@@ -36,7 +37,7 @@ const EXAMPLES: &str = "Examples:
   polhode compare --body gyroscope --omega 0,0,400 --until 1 \\
     --methods kick-drift@srkn-11b,dop853 --steps 1e-3 --tolerances 1e-8,1e-12
   polhode propagate --moments 1,2,3 --omega 0.4,1,-0.3 --until 10 --every 1 \\
-    --method mujoco-rk4 --step 0.01 --out simulator.csv
+    --method mujoco-rk4 --step 0.01 --fields t,q,omega --out simulator.csv
   polhode compare --moments 1,2,3 --omega 0.4,1,-0.3 --until 10 \\
     --methods rk4 --steps 0.01 --trajectory simulator.csv";
 
@@ -72,7 +73,7 @@ pub(crate) struct Compare {
     start_time: f64,
     /// A trajectory of another program as one more row: any file with an attitude that `polhode audit` reads, in the convention
     /// that its rows show; with an angular velocity also its errors of energy and momentum and its flips, at the rows of the
-    /// file; repeatable
+    /// file. The motion of another body is refused; repeatable
     #[arg(long, value_name = "FILE.csv", help_heading = "Methods")]
     trajectory: Vec<PathBuf>,
     #[command(flatten)]
@@ -102,11 +103,7 @@ impl Compare {
         let body = self.motion.body(self.start_time)?;
         let start = self.motion.start(&body, self.start_time)?;
         let span = self.span()?;
-        if self.trajectory.is_empty() && !self.table.is_empty() {
-            return Err(Error::Input(
-                "--columns, --time-unit and --sample-rate say how a trajectory is read; give --trajectory, or leave them out".into(),
-            ));
-        }
+        self.table.check_read(!self.trajectory.is_empty(), "--trajectory FILE")?;
         let entries = self.entries(span)?;
         let speed = body.omega_of(&start).norm();
         for entry in &entries {
@@ -118,9 +115,11 @@ impl Compare {
             .iter()
             .map(|path| {
                 let order = self.quaternion.map(Into::into);
-                Trajectory::read(path, &self.table.reading(None), order, &body, (self.start_time, self.until))
+                Trajectory::read(path, &self.table, order, &body, (self.start_time, self.until))
             })
             .collect::<Result<_, _>>()?;
+        let has_quaternions = trajectories.iter().any(|trajectory| trajectory.has_quaternions);
+        check_used(of_order(self.quaternion), has_quaternions, "a quaternion")?;
         // a place that cannot be written is found out before the work
         let figure_file = self.figure.as_deref().map(|path| {
             let picture = Picture::of("--figure", path, &[Picture::Svg, Picture::Png])?;
@@ -167,12 +166,12 @@ impl Compare {
         let end = self.start_time + known.min(span);
         for trajectory in &trajectories {
             table.push(self.foreign(&truth, trajectory)?);
-            if let Some(last) = trajectory.rows.last().map(|row| row.t).filter(|t| *t < end - 1e-9 * span) {
+            let is_judged = |t: &f64| *t - self.start_time <= known;
+            let last = trajectory.rows.iter().rev().map(|row| row.t).find(is_judged);
+            if let Some(last) = last.filter(|t| *t < end - 1e-9 * span) {
+                let (name, end, last) = (&trajectory.name, short(end), short(last));
                 warn(&format!(
-                    "{}: its last row is at t = {} s: its errors are of that time, and those of the methods of t = {} s",
-                    trajectory.name,
-                    short(last),
-                    short(end)
+                    "{name}: its last row until t = {end} s is at t = {last} s: its errors are of that time, and those of the methods of t = {end} s"
                 ));
             }
         }

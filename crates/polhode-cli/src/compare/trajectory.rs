@@ -12,18 +12,19 @@ use polhode::observe::{Errors, Monitor};
 use polhode::rotation::{Quat, Vec3};
 use polhode::truth::{Ending, LOST, Truth};
 use polhode::units::RateUnit;
-use polhode_files::error::{Error, unexpected};
+use polhode_files::error::{Error, unexpected, warn};
 use polhode_files::text::{short, visible};
-use polhode_files::{ColumnNames, ReadOptions, trajectory};
+use polhode_files::trajectory;
 
 use crate::flags::attitude::check_matrices;
+use crate::flags::table::TableArguments;
 
 /// Rows of a file.
 pub(crate) struct Trajectory {
     pub(crate) name: String,
     pub(crate) rows: Vec<Row>,
-    /// Whether its rows are those of a body with other moments, or with its moments about other axes.
-    pub(crate) is_of_another_body: bool,
+    /// Whether its attitudes are written as quaternions.
+    pub(crate) has_quaternions: bool,
 }
 
 /// One row of a file.
@@ -52,12 +53,13 @@ impl Trajectory {
     /// Of the file at `path`, whose times lie from the start to the end; `order`: the place of the scalar, where a flag says it.
     pub(crate) fn read(
         path: &Path,
-        table: &ReadOptions,
+        table: &TableArguments,
         order: Option<QuaternionOrder>,
         body: &Body,
         (start, end): (f64, f64),
     ) -> Result<Self, Error> {
-        let found = trajectory::read(path, table)?;
+        let found = trajectory::read(path, &table.reading(None))?;
+        table.check_times(&found.read_as)?;
         let name = visible(&path.display().to_string()).into_owned();
         let refused = |rule: &str, remedy: &str| Err(Error::input(&name, "", rule, remedy));
         if found.counts_steps {
@@ -66,13 +68,14 @@ impl Trajectory {
                 "give the length of a step, s, as --time-unit",
             );
         }
-        if !found.second_attitude.is_empty() && table.columns == ColumnNames::default() {
+        if !found.second_attitude.is_empty() && !table.names_columns() {
             let rule = format!(
                 "the columns {} hold another attitude, which is not read",
                 found.second_attitude.join(", ")
             );
             return refused(&rule, "name those of one body by --columns");
         }
+        let unread = found.remark();
         let mut bodies = found.bodies;
         let columns = match (bodies.len(), bodies.pop()) {
             (1, Some((_, columns))) => columns,
@@ -114,7 +117,18 @@ impl Trajectory {
             }
             rows.extend(row(&columns, &reading, k));
         }
-        Ok(Trajectory { name, rows, is_of_another_body })
+        if is_of_another_body {
+            return refused(
+                "its rows are those of a body with other moments, or of these about other axes",
+                "name its body; `polhode audit` tells more",
+            );
+        }
+        let momenta = columns.momentum.is_some().then(|| "its angular momenta are not compared".to_owned());
+        for remark in [unread, momenta].into_iter().flatten() {
+            warn(&format!("{name}: {remark}"));
+        }
+        let has_quaternions = matches!(columns.attitude, Some(Attitudes::Quaternions(_)));
+        Ok(Trajectory { name, rows, has_quaternions })
     }
 
     /// How far it is from the true motion, whose clock starts at `start_time`.
@@ -150,7 +164,7 @@ impl Trajectory {
         truth: &Truth,
         start_time: f64,
     ) -> Result<Option<(Errors, u64, Option<u64>)>, Error> {
-        // what is conserved here does not depend on time
+        // rows are taken for points of the start: what is conserved depends on time through motors alone
         let clock = Clock { start: start_time, step: 1.0 };
         let mut monitor = Monitor::new(truth.body(), clock, &truth.start());
         for row in &self.rows {
@@ -161,7 +175,11 @@ impl Trajectory {
             monitor.observe(&[point.to_f64()]);
         }
         let last = self.rows.last().map_or(0.0, |row| row.t - start_time);
-        Ok(Some((monitor.worst(), monitor.flips(), truth.flips(last))))
+        let mut worst = monitor.worst();
+        if truth.body().wheels().iter().any(|wheel| wheel.motor().is_some()) {
+            (worst.momentum_norm, worst.momentum_vector, worst.momentum_z) = (None, None, None);
+        }
+        Ok(Some((worst, monitor.flips(), truth.flips(last))))
     }
 }
 
@@ -199,7 +217,15 @@ fn reading(columns: &Columns, claims: Convention, body: &Body) -> Option<(Readin
     let Ok(verdict) = audit(columns, &question) else { return (!is_open).then_some((own, false)) };
     let best = verdict.reading;
     let is_other = verdict.judgement == Judgement::Wrong
-        && matches!(verdict.suspect, Suspect::OtherBody | Suspect::MomentsOrder);
+        && match verdict.suspect {
+            Suspect::OtherBody => true,
+            // rows that are far off may be nearest to another order without being its motion
+            Suspect::MomentsOrder => {
+                question.claims.moments = None;
+                audit(columns, &question).is_ok_and(|found| found.judgement == Judgement::Right)
+            }
+            _ => false,
+        };
     let ties = verdict.tie.map_or(Vec::new(), |tie| tie.readings);
     let differs = |other: &Reading| {
         (is_quaternion && other.quaternion != best.quaternion)

@@ -5,6 +5,7 @@ use polhode::audit::QuaternionOrder;
 use polhode::units::{RateUnit, TimeUnit};
 use polhode_files::error::Error;
 use polhode_files::numbers::positive;
+use polhode_files::text::short;
 use polhode_files::{ColumnNames, ReadAs, ReadOptions};
 
 /// Columns and times of a table.
@@ -18,14 +19,19 @@ pub(crate) struct TableArguments {
     #[arg(long, value_name = "UNIT", value_parser = time_unit)]
     time_unit: Option<TimeUnit>,
     /// Samples a second, where a column counts samples in place of a time, or rows have neither
-    #[arg(long, value_name = "HZ", value_parser = positive, allow_hyphen_values = true)]
+    #[arg(long, value_name = "HZ", value_parser = positive, allow_hyphen_values = true, conflicts_with = "time_unit")]
     sample_rate: Option<f64>,
 }
 
 impl TableArguments {
-    /// Whether no flag is given.
-    pub(crate) fn is_empty(&self) -> bool {
-        self.columns.is_none() && self.time_unit.is_none() && self.sample_rate.is_none()
+    /// Refuses flags where no file is read by them; `naming` is what names one.
+    pub(crate) fn check_read(&self, is_read: bool, naming: &str) -> Result<(), Error> {
+        if is_read || (self.columns.is_none() && self.time_unit.is_none() && self.sample_rate.is_none()) {
+            return Ok(());
+        }
+        Err(Error::Input(format!(
+            "--columns, --time-unit and --sample-rate say how a file is read; give {naming}, or leave them out"
+        )))
     }
 
     /// Whether a flag names columns.
@@ -33,13 +39,14 @@ impl TableArguments {
         self.columns.is_some()
     }
 
-    /// Refuses a unit of time where times are dates, or seconds and nanoseconds in two columns.
+    /// Refuses a unit of time or a rate of samples where times are dates, or seconds and nanoseconds in two columns.
     pub(crate) fn check_times(&self, read_as: &ReadAs) -> Result<(), Error> {
         let (times, _) = &read_as.times;
-        match self.time_unit {
-            Some(unit) if times == "dates" || times == "s and ns" => {
+        let unit = self.time_unit.map(|unit| ("--time-unit", unit.to_string()));
+        match unit.or_else(|| self.sample_rate.map(|rate| ("--sample-rate", short(rate)))) {
+            Some((flag, value)) if times == "dates" || times == "s and ns" => {
                 let rule = format!("the times of {} are {times} already", read_as.file);
-                Err(Error::input("--time-unit", &unit.to_string(), &rule, "leave it out"))
+                Err(Error::input(flag, &value, &rule, "leave it out"))
             }
             _ => Ok(()),
         }

@@ -37,6 +37,8 @@ pub(super) enum Against {
 pub(super) struct Rival {
     pub(super) track: Track,
     pub(super) note: String,
+    /// Whether it was read from quaternions.
+    pub(super) has_quaternions: bool,
 }
 
 const FLAGS: Flags = Flags { method: "--against", step: "--against" };
@@ -169,7 +171,7 @@ impl Show {
                 ending.word().into(),
             ));
         }
-        Ok(Rival { track: found, note })
+        Ok(Rival { track: found, note, has_quaternions: false })
     }
 
     fn recorded(
@@ -182,13 +184,9 @@ impl Show {
     ) -> Result<Rival, Error> {
         let (start, end) = (course.start_time, course.start_time + course.until);
         let order = self.quaternion.map(Into::into);
-        let read = Trajectory::read(path, &self.table.reading(None), order, &looks.body, (start, end))?;
+        let read = Trajectory::read(path, &self.table, order, &looks.body, (start, end))?;
         let refused =
             |value: &str, rule: &str, remedy: &str| Err(Error::input(&read.name, value, rule, remedy));
-        if read.is_of_another_body {
-            let rule = "its rows are those of a body with other moments, or of these about other axes";
-            return refused("", rule, "name its body; `polhode audit` tells more");
-        }
         let mut found = Track { name: file_name(path), ..Track::default() };
         for row in &read.rows {
             let attitude = turn(row.attitude).unwrap_or_default();
@@ -218,7 +216,7 @@ impl Show {
         {
             found.ending = Some((last, "ends".into()));
         }
-        Ok(Rival { track: found, note })
+        Ok(Rival { track: found, note, has_quaternions: read.has_quaternions })
     }
 
     /// Flips of a file, and its energy where it has angular velocities.

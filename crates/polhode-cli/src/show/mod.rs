@@ -18,6 +18,7 @@ use polhode_files::text::{rounded, short};
 use polhode_pages::output::Output;
 use polhode_pages::scene::{Scene, Track};
 
+use crate::flags::attitude::{check_used, of_order};
 use crate::flags::motion::MotionArguments;
 use crate::flags::table::{Order, TableArguments};
 use crate::plot::animation::track;
@@ -36,7 +37,7 @@ const EXAMPLES: &str = "Examples:
   polhode show --body racket --against rk4:0.02 --against rattle:0.02 \\
     --until 10 --out racket.html
   polhode propagate --body phone --until 5 --every 0.01 --method mujoco-rk4 \\
-    --step 0.01 --out run.csv
+    --step 0.01 --fields t,q,omega --out run.csv
   polhode show --body phone --against run.csv --out phone.html
   polhode show --body gyroscope --out top.html";
 
@@ -109,6 +110,8 @@ impl Show {
         let start = self.motion.start(&body, self.start_time)?;
         let against: Vec<Against> =
             self.against.iter().map(|text| Against::of(text)).collect::<Result<_, _>>()?;
+        let reads_files = against.iter().any(|against| matches!(against, Against::File(_)));
+        self.table.check_read(reads_files, "--against FILE")?;
         let until = match self.until {
             Some(until) => until,
             None => match against::last_time(&against, &self.table.reading(None))? {
@@ -194,11 +197,14 @@ impl Show {
         scene.notes.push(sentence(&look.words));
         scene.shape = look.shape;
         scene.ellipsoid = construction.map(|found| found.ellipsoid(looks));
+        let mut has_quaternions = false;
         for against in against {
             let rival = self.rival(against, course, looks, upright, &scene.body)?;
+            has_quaternions |= rival.has_quaternions;
             scene.notes.push(rival.note);
             scene.rivals.push(rival.track);
         }
+        check_used(of_order(self.quaternion), has_quaternions, "a quaternion")?;
         if scene.ellipsoid.is_some() {
             scene
                 .notes

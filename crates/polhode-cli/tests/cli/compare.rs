@@ -5,6 +5,10 @@ use std::fs;
 use crate::harness::{Scratch, golden, output, polhode, refused, run, words};
 
 const TEXTBOOK: &str = "compare --moments 1,2,3 --omega 0.4,1,-0.3";
+/// Its motion, and a method beside it.
+const MOTION: &str =
+    "propagate --moments 1,2,3 --omega 0.4,1,-0.3 --until 20 --every 0.5 --fields t,q,omega --format csv";
+const BESIDE: &str = "--until 20 --methods rk4 --steps 0.5 --trajectory";
 
 /// Rows of a CSV by column, without the times of this machine.
 fn rows(text: &str) -> Vec<Vec<(String, String)>> {
@@ -119,7 +123,7 @@ fn runs_that_lose_the_attitude_say_when() {
 #[test]
 fn a_trajectory_of_another_program_is_a_row() {
     let scratch = Scratch::new("compare-trajectory");
-    let exact = output("propagate --moments 1,2,3 --omega 0.4,1,-0.3 --until 20 --every 0.5");
+    let exact = output(MOTION);
     let right = scratch.file("right.csv", &exact);
     let mistaken = scratch.file("mistaken.csv", exact.replace("q_w,q_x,q_y,q_z", "q_x,q_y,q_z,q_w"));
     let line = format!(
@@ -182,6 +186,112 @@ fn a_trajectory_of_another_program_is_a_row() {
         &["e.csv, line 2, column 4 (y): 'zero': is not a number"],
     );
     refused(&flags(&bad("f.csv", "t,w,x,y,z\n")), &["f.csv", "no rows"]);
+}
+
+#[test]
+fn what_a_trajectory_holds_and_is_not_compared_is_told() {
+    let scratch = Scratch::new("compare-unread");
+    let text = output(MOTION);
+    let (header, motion) = text.split_once('\n').unwrap();
+    let file = |name: &str, more: &str, of: &dyn Fn(&[f64]) -> String| {
+        let row = |line: &str| {
+            let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+            format!("{line},{}\n", of(&cells))
+        };
+        scratch.file(name, format!("{header},{more}\n{}", motion.lines().map(row).collect::<String>()))
+    };
+    let told = |file: &str| {
+        let answer = run(&format!("{TEXTBOOK} {BESIDE} {file}"));
+        assert_eq!(answer.code, 0, "{}", answer.err);
+        answer.err
+    };
+    // a time of a unit comes before one without
+    let same = file("same.csv", "time_ms,lift", &|row| format!("{},7", 1000.0 * row[0]));
+    assert_eq!(told(&same), format!("warning: {same}: not read: t, lift\n"));
+    let late = |row: &[f64]| if row[0] > 10.0 { 400.0 } else { 0.0 };
+    let jump = file("jump.csv", "time_ms", &|row| format!("{}", 1000.0 * row[0] - late(row)));
+    let says = "not read: t; column 't' is a time too, and does not go with the times that are read";
+    assert!(told(&jump).contains(says), "{}", told(&jump));
+    let momenta =
+        file("momenta.csv", "lx,ly,lz", &|row| format!("{},{},{}", row[5], 2.0 * row[6], 3.0 * row[7]));
+    assert_eq!(told(&momenta), format!("warning: {momenta}: its angular momenta are not compared\n"));
+}
+
+#[test]
+fn flags_that_no_trajectory_has_a_use_for_are_refused() {
+    let scratch = Scratch::new("compare-flags");
+    let poses = "t,q_w,q_x,q_y,q_z\n0,1,0,0,0\n1,1,0,0,0\n";
+    let dated = poses.replace("\n0,", "\n2026-01-01T00:00:00Z,").replace("\n1,", "\n2026-01-01T00:00:01Z,");
+    let dates = scratch.file("dates.csv", dated);
+    let line = format!("{TEXTBOOK} {BESIDE}");
+    for (flags, says) in [
+        ("--time-unit ms", "--time-unit: 'ms': the times of"),
+        ("--columns t=t --sample-rate 20", "--sample-rate: '20': the times of"),
+    ] {
+        refused(&format!("{line} {dates} {flags}"), &[says, "are dates already; leave it out"]);
+    }
+    let both = format!("{line} {dates} --time-unit ms --sample-rate 20");
+    refused(&both, &["--sample-rate", "cannot be used with"]);
+    let parameters = scratch.file("mrp.csv", "t,sigma_1,sigma_2,sigma_3\n0,0,0,0\n1,0,0,0\n");
+    let order = "--quaternion xyzw";
+    refused(
+        &format!("{line} {parameters} {order}"),
+        &["--quaternion: 'xyzw': says how a quaternion is written, and none is read"],
+    );
+    // one of several has a use for it
+    let numbered = scratch.file("numbered.csv", poses.replace("q_w,q_x,q_y,q_z", "q0,q1,q2,q3"));
+    assert_eq!(run(&format!("{line} {parameters} --trajectory {numbered} {order}")).code, 0);
+}
+
+#[test]
+fn the_motion_of_another_body_is_not_compared() {
+    let scratch = Scratch::new("compare-other");
+    let file = scratch.file("exact.csv", output(&MOTION.replace("--every 0.5", "--every 0.25")));
+    assert_eq!(run(&format!("{TEXTBOOK} {BESIDE} {file}")).code, 0);
+    for moments in ["1,2,2.2", "2,1,3"] {
+        let line = format!("compare --moments {moments} --omega 0.4,1,-0.3 {BESIDE} {file}");
+        refused(&line, &["exact.csv: its rows are those of a body with other moments", "name its body"]);
+    }
+}
+
+#[test]
+fn rows_beside_the_known_motion_are_not_judged() {
+    let scratch = Scratch::new("compare-beside");
+    let early = scratch.file("early.csv", "t,q_w,q_x,q_y,q_z\n2,1,0,0,0\n");
+    let says = "early.csv: '2': lies outside of the run, t from 5 to 20";
+    refused(&format!("{TEXTBOOK} --start-time 5 {BESIDE} {early}"), &[says]);
+    // two runs of a chaotic top part long before
+    let start = "0.99855035,0.049975836,0.019990334,0";
+    let top = format!(
+        "compare --moments 0.5,0.85,1 --weight-moment 0,0,1 --omega 0.2,0.235,0.5 --attitude {start} \
+         --until 600 --methods rk4 --steps 0.5 --trajectory"
+    );
+    let late = "599,1,0,0,0\n600,1,0,0,0\n";
+    let file = scratch.file("late.csv", format!("t,q_w,q_x,q_y,q_z\n{late}"));
+    let answer = run(&format!("{top} {file}"));
+    assert_eq!((answer.code, answer.out.as_str()), (2, ""), "{}", answer.err);
+    let says = "late.csv: '599': the true motion is known until t = ";
+    assert!(answer.err.contains(says), "{}", answer.err);
+    let file = scratch.file("start.csv", format!("t,q_w,q_x,q_y,q_z\n0,{start}\n{late}"));
+    let answer = run(&format!("{top} {file}"));
+    let row = &rows(&answer.out)[1];
+    assert_eq!((cell(row, "status"), number(row, "attitude_time")), ("ok", 0.0));
+    assert!(answer.err.contains("s is at t = 0 s: its errors are of that time"), "{}", answer.err);
+}
+
+#[test]
+fn the_momentum_of_a_driven_wheel_is_not_taken_for_that_of_the_start() {
+    let scratch = Scratch::new("compare-motor");
+    let body = "--moments 70,90,120 --omega 0.01,0,0.2 --wheel 0,1,0,0.06@2000rpm,torque=0.01 --until 60";
+    let line = format!("propagate {body} --every 1 --method rk4 --step 0.1 --fields t,q,omega --format csv");
+    let file = scratch.file("run.csv", run(&line).out);
+    let answer = run(&format!("compare {body} --methods rk4 --steps 0.5 --trajectory {file}"));
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    let found = rows(&answer.out);
+    assert!(number(&found[1], "attitude_error") < 1e-6, "{found:?}");
+    // both conserve the momentum of body and wheel
+    assert!(number(&found[0], "momentum_vector_error") < 1e-3, "{found:?}");
+    assert_eq!((cell(&found[1], "momentum_error"), cell(&found[1], "momentum_vector_error")), ("", ""));
 }
 
 #[test]

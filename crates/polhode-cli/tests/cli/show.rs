@@ -107,7 +107,7 @@ fn a_file_is_shown_at_its_own_times() {
             polhode(&words(&format!("propagate --moments 1,2,3 --omega 0.4,1,-0.3 {flags}")), &scratch.0);
         assert_eq!(answer.code, 0, "{}", answer.err);
     };
-    run("--until 20 --every 0.25 --method rk4 --step 0.25 --out run.csv");
+    run("--until 20 --every 0.25 --method rk4 --step 0.25 --fields t,q,omega --out run.csv");
     let page = silently(&scratch, &format!("{FREE} --against run.csv --against rk4:0.25"));
     let (file, method) = (page.rival(0), page.rival(1));
     assert_eq!(file.name, "run.csv");
@@ -350,6 +350,9 @@ fn what_cannot_be_shown_is_refused_with_what_can() {
         &with("--until 1e7 --out a.html"),
         &["--until: '10000000'", "a page holds no more", "earlier end"],
     );
+    refused(&with("--until 5 --time-unit ms --out a.html"), &["--time-unit", "give --against FILE"]);
+    let order = "--until 5 --quaternion xyzw --out a.html";
+    refused(&with(order), &["--quaternion: 'xyzw'", "and none is read"]);
     refused(&with("--until 5 --step 0.1 --out a.html"), &["--method"]);
     refused(&with("--until 5 --mesh absent.stl --out a.html"), &["absent.stl"]);
     refused("show --body t-handle --mesh nothing.txt --out a.html", &["nothing.txt", ".stl, .obj or .ply"]);
