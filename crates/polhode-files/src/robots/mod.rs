@@ -231,6 +231,31 @@ mod tests {
     }
 
     #[test]
+    fn a_body_is_not_computed_from_some_of_its_geoms() {
+        let geom = "<geom size='1' mass='1'/>";
+        let body = |more: &str| {
+            let text = format!("<mujoco><body name='b'>{geom}{more}</body></mujoco>");
+            defects(Language::Mjcf, &text)
+        };
+        for (more, says) in [
+            ("<frame name='f' euler='0 0'><geom size='1'/></frame>", "<frame>: euler: 2 given, 3 needed"),
+            ("<replicate name='f'><geom size='1'/></replicate>", "<replicate>: count is missing"),
+            ("<replicate name='f' count='2.5'><geom size='1'/></replicate>", "<replicate>: count: 2.5 is no"),
+            ("<replicate name='f' count='-1'><geom size='1'/></replicate>", "<replicate>: count: -1 is no"),
+        ] {
+            let found = body(more);
+            assert_eq!(found.len(), 2, "{more}: {found:?}");
+            for ((name, defect), expected) in found.iter().zip(["b", "f"]) {
+                assert_eq!(name, expected, "{more}");
+                assert!(defect.starts_with(&format!("model:1: {says}")), "{more}: {found:?}");
+            }
+        }
+        // of a body that states its inertia geoms do not matter
+        let found = body("<frame euler='0 0'/><inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>");
+        assert_eq!(found[0], ("b".to_string(), String::new()));
+    }
+
+    #[test]
     fn a_place_or_a_moment_that_stands_twice_is_a_defect() {
         let origins = "<origin xyz='1 0 0'/><origin xyz='0 0 0' rpy='0 0 0.5'/>";
         let urdf = format!("<link name='a'><inertial>{origins}{TENSOR}</inertial></link>");

@@ -53,8 +53,14 @@ struct Model<'e> {
     walked: usize,
 }
 
-/// The geoms of a body, with their frames in it and the class of their defaults.
-type Geoms<'e> = Vec<(&'e Element, Pose, &'e str)>;
+/// The geoms of a body.
+#[derive(Default)]
+struct Geoms<'e> {
+    /// With their frames in it and the class of their defaults.
+    found: Vec<(&'e Element, Pose, &'e str)>,
+    /// Why some of them are not among these.
+    defect: Option<String>,
+}
 
 impl<'e> Model<'e> {
     /// Adds the bodies below `element`, and its geoms to `geoms`; `suffix` ends the names in a copy.
@@ -68,13 +74,14 @@ impl<'e> Model<'e> {
     ) {
         for child in &element.children {
             self.walked += 1;
-            if self.walked == MOST_ELEMENTS {
-                let defect = format!(
-                    "more than {MOST_ELEMENTS} elements, copies among them; the rest is not examined"
-                );
-                self.found.push(link(&name(child, suffix), child, Err(child.error(&defect))));
-            }
             if self.walked >= MOST_ELEMENTS {
+                let defect = child.error(&format!(
+                    "more than {MOST_ELEMENTS} elements, copies among them; the rest is not examined"
+                ));
+                lack(geoms, &defect);
+                if self.walked == MOST_ELEMENTS {
+                    self.found.push(link(&name(child, suffix), child, Err(defect)));
+                }
                 return;
             }
             let class = child.attribute("childclass").unwrap_or(class);
@@ -82,12 +89,15 @@ impl<'e> Model<'e> {
                 "body" => self.body(child, class, suffix),
                 "geom" => {
                     if let Some(geoms) = geoms {
-                        geoms.push((child, frame, child.attribute("class").unwrap_or(class)));
+                        geoms.found.push((child, frame, child.attribute("class").unwrap_or(class)));
                     }
                 }
                 "frame" => match self.compiler.pose(child) {
                     Ok(pose) => self.walk(child, frame.around(&pose), class, suffix, geoms),
-                    Err(defect) => self.found.push(link(&name(child, suffix), child, Err(defect))),
+                    Err(defect) => {
+                        lack(geoms, &defect);
+                        self.found.push(link(&name(child, suffix), child, Err(defect)));
+                    }
                 },
                 "replicate" => self.replicate(child, frame, class, suffix, geoms),
                 "attach" | "composite" | "flexcomp" => {
@@ -108,7 +118,7 @@ impl<'e> Model<'e> {
         let place = self.found.len();
         // its place is before those of the bodies in it
         self.found.push(Given::massless());
-        let mut geoms = Some(Geoms::new());
+        let mut geoms = Some(Geoms::default());
         self.walk(element, Pose::identity(), class, suffix, &mut geoms);
         let own = element.single("inertial");
         let stated = match own {
@@ -125,9 +135,12 @@ impl<'e> Model<'e> {
     }
 
     fn of_geoms(&mut self, geoms: &Geoms<'e>) -> Result<Option<Given>, String> {
+        if let Some(defect) = &geoms.defect {
+            return Err(defect.clone());
+        }
         let mut parts = Vec::new();
         let mut remarks = Vec::new();
-        for (element, frame, class) in geoms {
+        for (element, frame, class) in &geoms.found {
             let geom = geom::Geom { element, defaults: &self.defaults, class, compiler: &self.compiler };
             if let Some(part) = geom.body(frame, &mut self.meshes, &mut remarks)? {
                 parts.push(part);
@@ -184,6 +197,9 @@ impl<'e> Model<'e> {
     ) {
         let read = || -> Result<(usize, Pose), String> {
             let [count] = element.needed::<1>("count")?;
+            if count < 0.0 || count.fract() != 0.0 {
+                return Err(element.error(&format!("count: {count} is no number of copies")));
+            }
             let at = Vector3::from(element.optional::<3>("offset")?.unwrap_or_default());
             let turn = self.compiler.pose(element)?.turn;
             Ok((count as usize, Pose { at, turn }))
@@ -195,14 +211,25 @@ impl<'e> Model<'e> {
                 let mut copy = frame;
                 for k in 0..count {
                     if self.walked >= MOST_ELEMENTS {
+                        lack(geoms, &element.error("not all of its copies are examined"));
                         return;
                     }
                     self.walk(element, copy, class, &format!("{suffix}{separator}{k:0digits$}"), geoms);
                     copy = copy.around(&step);
                 }
             }
-            Err(defect) => self.found.push(link(&name(element, suffix), element, Err(defect))),
+            Err(defect) => {
+                lack(geoms, &defect);
+                self.found.push(link(&name(element, suffix), element, Err(defect)));
+            }
         }
+    }
+}
+
+/// A body of which some geoms are not known has no inertia that could be computed.
+fn lack(geoms: &mut Option<Geoms<'_>>, defect: &str) {
+    if let Some(geoms) = geoms {
+        geoms.defect.get_or_insert_with(|| defect.into());
     }
 }
 
