@@ -231,6 +231,24 @@ mod tests {
     }
 
     #[test]
+    fn a_total_mass_is_shared_out_among_bodies_that_are_all_read() {
+        let model = |more: &str| {
+            let body = "<body name='b'><geom size='1' mass='3'/></body>";
+            let text = format!("<mujoco><compiler settotalmass='6'/>{body}{more}</mujoco>");
+            read(Language::Mjcf, Path::new("model"), &text, None).unwrap()
+        };
+        // 6 kg of 3 kg and 1 kg, and of 3 kg and what nobody knows
+        assert_eq!(model("<body name='c'><geom size='1' mass='1'/></body>")[0].mass, Some(4.5));
+        for more in ["<body name='c'><geom size='1' mass='x'/></body>", "<include file='nowhere.xml'/>"] {
+            let found = model(more);
+            assert_eq!((found.len(), found[0].mass), (3, Some(3.0)), "{more}: {found:?}");
+            assert_eq!(found[2].name, SETTINGS, "{more}");
+            let says = "model:1: <compiler>: settotalmass: not every body can be read";
+            assert!(found[2].defect.as_ref().is_some_and(|defect| defect.starts_with(says)), "{found:?}");
+        }
+    }
+
+    #[test]
     fn a_body_is_not_computed_from_some_of_its_geoms() {
         let geom = "<geom size='1' mass='1'/>";
         let body = |more: &str| {

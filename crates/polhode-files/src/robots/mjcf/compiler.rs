@@ -31,6 +31,8 @@ pub(super) struct Compiler {
     least_mass: f64,
     least_moment: f64,
     total_mass: Option<f64>,
+    /// The row that says why that is not obeyed.
+    unscaled: Option<Given>,
 }
 
 impl Compiler {
@@ -44,6 +46,7 @@ impl Compiler {
             least_mass: 0.0,
             least_moment: 0.0,
             total_mass: None,
+            unscaled: None,
         };
         let mut unread = Vec::new();
         for element in all.iter().filter(|element| element.tag == "compiler") {
@@ -84,7 +87,11 @@ impl Compiler {
             };
             settings.least_mass = number("boundmass").unwrap_or(settings.least_mass);
             settings.least_moment = number("boundinertia").unwrap_or(settings.least_moment);
-            settings.total_mass = number("settotalmass").or(settings.total_mass);
+            if let Some(total) = number("settotalmass") {
+                let rule = "settotalmass: not every body can be read, so that masses stay as they are";
+                settings.total_mass = Some(total);
+                settings.unscaled = Some(link(SETTINGS, element, Err(element.error(rule))));
+            }
         }
         (settings, unread)
     }
@@ -95,15 +102,18 @@ impl Compiler {
         Ok(Pose { at, turn: orientation(element, self)? })
     }
 
-    /// Least masses and moments, then the total mass.
-    pub(super) fn adjust(&self, bodies: &mut [Given]) {
+    /// Least masses and moments, then the total mass. That needs every body: where one is missing, a row says so.
+    pub(super) fn adjust(&self, bodies: &mut [Given], is_whole: bool) -> Option<Given> {
         for body in bodies.iter_mut().filter(|body| body.defect.is_none()) {
             self.raise(body);
         }
-        let Some(total) = self.total_mass.filter(|total| *total > 0.0) else { return };
+        let total = self.total_mass.filter(|total| *total > 0.0)?;
+        if !is_whole || bodies.iter().any(|body| body.defect.is_some()) {
+            return self.unscaled.clone();
+        }
         let sum: f64 = bodies.iter().filter_map(|body| body.mass).sum();
         if sum <= 0.0 {
-            return;
+            return None;
         }
         for body in bodies.iter_mut() {
             let factor = total / sum;
@@ -114,6 +124,7 @@ impl Compiler {
                 body.add_remark(&format!("scaled so that all bodies have {total} kg (settotalmass)"));
             }
         }
+        None
     }
 
     fn raise(&self, body: &mut Given) {

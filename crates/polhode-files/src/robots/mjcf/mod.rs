@@ -38,9 +38,10 @@ pub(super) fn bodies(document: Element, path: &Path, root: Option<&Path>) -> Vec
     };
     model.walk(&document, Pose::identity(), "main", "", &mut None);
     let mut bodies = model.found;
-    model.compiler.adjust(&mut bodies);
+    let unscaled = model.compiler.adjust(&mut bodies, refused.is_empty());
     bodies.extend(refused);
     bodies.extend(unread);
+    bodies.extend(unscaled);
     bodies
 }
 
