@@ -121,6 +121,14 @@ fn a_link_of_a_model_is_named_behind_a_colon() {
         "<mujoco><compiler angle='Radian'/><body name='a'><geom size='1' mass='1'/></body></mujoco>",
     );
     refused(&format!("propagate --body {model}:a {start}"), &["model.xml:1: <compiler>: angle: 'Radian'"]);
+    let model = scratch.file(
+        "parted.xml",
+        "<mujoco><include file='absent.xml'/><body name='a'><geom size='1' mass='1'/></body></mujoco>",
+    );
+    refused(
+        &format!("propagate --body {model}:a {start}"),
+        &["parted.xml:1: <include>: file 'absent.xml' is not"],
+    );
     let nameless = scratch.file("box.json", output("inertia box 3,2,1 --mass 1 --format json"));
     refused(&format!("propagate --body {nameless}:lid {start}"), &["have no names", "leave out the colon"]);
     let empty = scratch.file("frames.urdf", "<robot name='r'><link name='base'/></robot>");

@@ -134,9 +134,11 @@ fn links(path: &Path, kind: &str, meant: Option<&str>) -> Result<Vec<Named>, Err
         turn * body.tensor * turn.transpose()
     };
     let links = robots::with_namesakes(language, path, &text, None)?;
-    // which could change every tensor
-    let unread = links.iter().find(|link| link.name == robots::SETTINGS);
-    if let Some(defect) = unread.and_then(|link| link.defect.clone()) {
+    // which could change every tensor: settings and defaults may stand in an included file too
+    let is_common = |link: &&Given| {
+        link.name == robots::SETTINGS || language == Language::Mjcf && link.name.starts_with("include ")
+    };
+    if let Some(defect) = links.iter().filter(is_common).find_map(|link| link.defect.clone()) {
         return Err(Error::Input(defect));
     }
     // a frame without a body, and a link that states no tensor, have none to give
