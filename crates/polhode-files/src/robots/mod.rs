@@ -230,6 +230,39 @@ mod tests {
         }
     }
 
+    /// Two corners of a cube, of 1/6 m³ each, ten metres apart.
+    const CORNERS: &str = "vertex='0 0 0 1 0 0 0 1 0 0 0 1 10 0 0 11 0 0 10 1 0 10 0 1' \
+                           face='0 2 1 0 1 3 0 3 2 1 2 3 4 6 5 4 5 7 4 7 6 5 6 7'";
+
+    fn with_mesh(settings: &str, mesh: &str, geom: &str) -> Given {
+        let text = format!(
+            "<mujoco><compiler {settings}/><asset><mesh name='m' {CORNERS} {mesh}/></asset>\
+             <body name='b'><geom {geom}/></body></mujoco>"
+        );
+        read(Language::Mjcf, Path::new("model"), &text, None).unwrap().remove(0)
+    }
+
+    /// About the middle of both the triangle x = 0 alone has a pyramid of some 5/6 m³, which it does not enclose.
+    #[test]
+    fn the_compiler_of_old_models_says_that_meshes_are_counted_once() {
+        let mass = |settings: &str| with_mesh(settings, "", "type='mesh' mesh='m' density='3'").mass.unwrap();
+        assert!((mass("exactmeshinertia='true'") - 1.0).abs() < 1e-12);
+        assert!(mass("") > 2.0 && mass("exactmeshinertia='false'") > 2.0);
+    }
+
+    #[test]
+    fn what_mujoco_refuses_of_geoms_with_meshes_is_a_defect() {
+        for (mesh, geom, says) in [
+            ("", "type='mesh' mesh='m' shellinertia='true'", "<geom>: shellinertia is of primitives alone"),
+            ("", "type='mesh' mesh='m' fromto='0 0 0 0 0 1'", "<geom>: fromto does not belong to the type"),
+            ("", "size='1' shellinertia='True'", "<geom>: shellinertia: 'True' is unknown; known:"),
+            ("class='none'", "type='mesh' mesh='m'", "<mesh>: no default class 'none'"),
+        ] {
+            let defect = with_mesh("", mesh, geom).defect.unwrap_or_default();
+            assert!(defect.contains(says), "{mesh} {geom}: {defect}");
+        }
+    }
+
     #[test]
     fn a_total_mass_is_shared_out_among_bodies_that_are_all_read() {
         let model = |more: &str| {

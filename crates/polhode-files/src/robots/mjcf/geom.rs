@@ -48,6 +48,13 @@ impl<'e> Geom<'e, '_> {
         }
         let amount = mass.map_or(Amount::Density(density), Amount::Mass);
         let body = match (kind, self.text("mesh")) {
+            ("mesh", Some(_)) if self.text("fromto").is_some() => {
+                return Err(self.element.error("fromto does not belong to the type mesh"));
+            }
+            ("mesh", Some(_)) if self.is_shell()? => {
+                let rule = "shellinertia is of primitives alone; write inertia=\"shell\" at the <mesh>";
+                return Err(self.element.error(rule));
+            }
             ("mesh", Some(mesh)) => {
                 let found = meshes.body(mesh, self.defaults).map_err(|error| self.element.error(&error))?;
                 remarks.extend(found.remark.clone().map(|remark| format!("mesh '{mesh}': {remark}")));
@@ -76,6 +83,18 @@ impl<'e> Geom<'e, '_> {
 
     fn numbers<const N: usize>(&self, attribute: &str) -> Result<Option<[f64; N]>, String> {
         self.value(attribute).map_or(Ok(None), |level| level.optional(attribute))
+    }
+
+    /// Whether only the surface has matter.
+    fn is_shell(&self) -> Result<bool, String> {
+        match self.text("shellinertia") {
+            None | Some("false") => Ok(false),
+            Some("true") => Ok(true),
+            Some(other) => {
+                let rule = format!("shellinertia: '{other}' is unknown; known: false, true");
+                Err(self.element.error(&rule))
+            }
+        }
     }
 
     /// Half sizes; a class fills up what the geom leaves out.
@@ -134,7 +153,7 @@ impl<'e> Geom<'e, '_> {
                 )));
             }
         };
-        if self.text("shellinertia") != Some("true") {
+        if !self.is_shell()? {
             return solid.with(amount).map_err(|error| self.element.error(&error.to_string()));
         }
         let (area, [x, y, z]) = surface(kind, [a, b, c]);

@@ -19,6 +19,8 @@ pub(super) struct Meshes<'e> {
     assets: HashMap<String, &'e Element>,
     folder: PathBuf,
     strips: bool,
+    /// What counts as the matter of a mesh that does not say it; before MuJoCo 3.2.5 the compiler did.
+    inertia: &'static str,
     done: HashMap<String, Result<Body, String>>,
 }
 
@@ -48,7 +50,8 @@ impl<'e> Meshes<'e> {
             }
         }
         let strips = setting("strippath") == Some("true");
-        Meshes { assets, folder: of_model.join(folder), strips, done: HashMap::new() }
+        let inertia = if setting("exactmeshinertia") == Some("true") { "exact" } else { "legacy" };
+        Meshes { assets, folder: of_model.join(folder), strips, inertia, done: HashMap::new() }
     }
 
     /// The matter of the mesh called `name`.
@@ -66,6 +69,9 @@ impl<'e> Meshes<'e> {
 
     fn computed(&self, asset: &'e Element, defaults: &Defaults<'e>) -> Result<Body, String> {
         let class = asset.attribute("class").unwrap_or("main");
+        if !defaults.has(class) {
+            return Err(format!("no default class '{class}'"));
+        }
         let text = |attribute| defaults.value(asset, class, attribute).map(|(_, value)| value.text.as_str());
         let scale = match defaults.value(asset, class, "scale") {
             Some((level, _)) => level.needed::<3>("scale")?,
@@ -79,7 +85,7 @@ impl<'e> Meshes<'e> {
         let map = |v: Vector3<f64>| (back * (v - at)).component_mul(&Vector3::from(scale));
         let surface = self.surface(asset)?.mapped(map).map_err(|error| error.to_string())?;
         let surface = if scale.iter().product::<f64>() < 0.0 { surface.reversed() } else { surface };
-        match text("inertia").unwrap_or("legacy") {
+        match text("inertia").unwrap_or(self.inertia) {
             "legacy" => legacy(&surface),
             "convex" => enclosed(&surface.hull().map_err(|error| error.to_string())?),
             "exact" => enclosed(&surface),
