@@ -201,6 +201,16 @@ mod tests {
     }
 
     #[test]
+    fn a_link_of_urdf_with_nothing_but_a_line_break_in_it_is_a_link() {
+        let frames = "<link name='a'>\n</link><link name='b'/><transmission><link>b</link></transmission>";
+        let names: Vec<String> = defects(Language::Urdf, &format!("<robot>{frames}</robot>"))
+            .into_iter()
+            .map(|(name, _)| name)
+            .collect();
+        assert_eq!(names, ["a", "b"]);
+    }
+
+    #[test]
     fn settings_that_cannot_be_read_are_defects() {
         let model = |settings: &str| {
             let body = "<body name='b'><geom type='box' size='1 2 3' mass='1'/></body>";

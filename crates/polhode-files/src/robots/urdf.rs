@@ -36,7 +36,8 @@ pub(super) fn links(document: &Element) -> Vec<Given> {
 
 /// Transmissions and plugins name links by elements of the same name, which hold text or an attribute alone.
 fn is_link(element: &Element) -> bool {
-    element.text.is_none() && element.attribute("link").is_none() && element.attribute("name").is_some()
+    let is_blank = element.text.as_ref().is_none_or(|text| text.text.trim().is_empty());
+    is_blank && element.attribute("link").is_none() && element.attribute("name").is_some()
 }
 
 /// What `<inertial>` states; a mass of zero with a tensor of zeros is none.
