@@ -317,6 +317,18 @@ mod tests {
     }
 
     #[test]
+    fn a_full_tensor_of_mjcf_is_not_turned() {
+        let of = |attributes: &str| {
+            let text = format!("<inertial pos='0 0 0' mass='2' {attributes}/>");
+            defects(Language::Mjcf, &text).remove(0).1
+        };
+        let says = "model:1: <inertial>: has both fullinertia and euler; leave one out";
+        assert_eq!(of("fullinertia='1 2 2.5 0 0 0' euler='0 0 90'"), says);
+        assert_eq!(of("fullinertia='1 2 2.5 0 0 0'"), "");
+        assert_eq!(of("diaginertia='1 2 2.5' euler='0 0 90'"), "");
+    }
+
+    #[test]
     fn a_place_or_a_moment_that_stands_twice_is_a_defect() {
         let origins = "<origin xyz='1 0 0'/><origin xyz='0 0 0' rpy='0 0 0.5'/>";
         let urdf = format!("<link name='a'><inertial>{origins}{TENSOR}</inertial></link>");

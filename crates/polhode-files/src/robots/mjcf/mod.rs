@@ -20,6 +20,7 @@ use super::{Given, is_massless, link, positive, writing};
 use compiler::{Compiler, Source};
 use defaults::Defaults;
 use mesh::Meshes;
+use orientation::ATTRIBUTES;
 
 /// Elements of bodies that one model may have, copies of `<replicate>` among them: copies of copies grow without bound.
 const MOST_ELEMENTS: usize = 1_000_000;
@@ -171,6 +172,11 @@ impl<'e> Model<'e> {
         };
         if is_massless(mass, &entries) {
             return Ok(None);
+        }
+        // the axes of a full tensor are those of the body
+        let turn = ATTRIBUTES.iter().find(|turn| inertial.attribute(turn).is_some());
+        if let (Some(turn), Some(_)) = (turn, full) {
+            return Err(inertial.error(&format!("has both fullinertia and {turn}; leave one out")));
         }
         let pose = self.compiler.pose(inertial)?;
         let [xx, yy, zz, xy, xz, yz] = entries;
