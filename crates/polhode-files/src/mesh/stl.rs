@@ -82,6 +82,7 @@ fn ascii(reader: impl BufRead) -> Result<Surface, MeshFileError> {
                 mesh.add(three.map_err(|_| syntax("the third vertex of a facet, and no fourth,"))?)?;
                 facets += 1;
             }
+            Some("solid" | "endsolid") if !corners.is_empty() => return Err(syntax("'endfacet'")),
             Some("endsolid") => closed = true,
             Some("solid") => {
                 closed = false;

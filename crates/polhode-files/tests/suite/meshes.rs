@@ -184,6 +184,11 @@ fn broken_files_name_the_byte_or_the_line() {
         message(text.replacen("   vertex 0e0 0e0 1e0\n", "", 1)),
         "line 14: 'endfacet' where the third vertex of a facet, and no fourth, is expected"
     );
+    let end = text.rfind(" endfacet\n").unwrap();
+    assert_eq!(
+        message(text[..end].to_owned() + &text[end + " endfacet\n".len()..]),
+        "line 85: 'endsolid a cube' where 'endfacet' is expected"
+    );
     assert_eq!(
         message(format!("{text}facet normal 0 0 0\n")),
         "line 87: 'facet normal 0 0 0' where 'solid' or the end of the file is expected"
