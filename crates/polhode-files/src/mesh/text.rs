@@ -52,7 +52,8 @@ impl<R: BufRead> Lines<R> {
             return Err(MeshFileError::LongLine { line: self.line });
         }
         self.text.clear();
-        self.text.push_str(&String::from_utf8_lossy(&self.buffer));
+        // a mark of the byte order would hide the first word, such as the first vertex of an OBJ
+        self.text.push_str(String::from_utf8_lossy(&self.buffer).trim_start_matches('\u{feff}'));
         Ok(Some((self.line, &self.text)))
     }
 }

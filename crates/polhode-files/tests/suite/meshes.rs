@@ -116,6 +116,7 @@ fn every_format_reads_the_same_cube() {
         from_stl(text.as_bytes()).unwrap(),
         from_stl(text.to_uppercase().replace('\n', "\r\n").as_bytes()).unwrap(),
         from_obj(OBJ_CUBE.as_bytes()).unwrap(),
+        from_obj(OBJ_CUBE.replacen("# a cube\nmtllib cube.mtl\n", "\u{feff}", 1).as_bytes()).unwrap(),
     ];
     for mesh in read {
         let body = mesh.with(Amount::Mass(6.0)).unwrap();
