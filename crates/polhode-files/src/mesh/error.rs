@@ -133,9 +133,19 @@ pub enum MeshFileError {
         /// Number of the face, from 1.
         face: u64,
         /// The offending index.
-        index: i64,
+        index: f64,
         /// Vertices of the file.
         vertices: usize,
+    },
+    /// The length of a list of a PLY is none.
+    #[error("{element} {number} has a list of {length} numbers; a length is a whole number, zero or above")]
+    ListLength {
+        /// Name of the element.
+        element: String,
+        /// Its number, from 1.
+        number: u64,
+        /// What stands for the length.
+        length: f64,
     },
     /// A list of a PLY is absurdly long.
     #[error(

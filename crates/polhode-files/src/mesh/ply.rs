@@ -159,10 +159,11 @@ fn add(
     face: u64,
 ) -> Result<(), MeshFileError> {
     let at = |index: f64| {
-        let found = if index >= 0.0 { vertices.get(index as usize) } else { None };
+        let place = (index >= 0.0 && index.fract() == 0.0).then_some(index as usize);
+        let found = place.and_then(|place| vertices.get(place));
         found.map(|at| Vector3::from(*at)).ok_or(MeshFileError::Corner {
             face,
-            index: index as i64,
+            index,
             vertices: vertices.len(),
         })
     };
@@ -247,9 +248,13 @@ impl<R: BufRead> Numbers<R> {
         let mut values = Vec::with_capacity(element.properties.len());
         for property in &element.properties {
             let length = match property.length {
-                None => 1,
-                Some(kind) => self.number(kind)?.ok_or_else(truncated)? as u64,
+                None => 1.0,
+                Some(kind) => self.number(kind)?.ok_or_else(truncated)?,
             };
+            if length < 0.0 || length.fract() != 0.0 {
+                return Err(MeshFileError::ListLength { element: element.name.clone(), number, length });
+            }
+            let length = length as u64;
             if length > LONGEST_LIST {
                 return Err(MeshFileError::LongList { element: element.name.clone(), number, length });
             }

@@ -323,6 +323,11 @@ fn ply_files_are_read_in_every_encoding() {
         ("ply\nformat ascii 1.0\n", "line 3: '' where 'end_header' is expected"),
         (&format!("{head}3 0 1 2\n"), "face 1 names vertex 1, counted from 0, but there are 1"),
         (&format!("{head}3 0 x 2\n"), "line 11: 'x' where a number is expected"),
+        (&format!("{head}3 0 0.5 2\n"), "face 1 names vertex 0.5, counted from 0, but there are 1"),
+        (
+            &format!("{head}-1\n"),
+            "face 1 has a list of -1 numbers; a length is a whole number, zero or above",
+        ),
         (
             &format!("{head}4000000000 0\n"),
             "face 1 has a list of 4000000000 numbers, and at most 1048576 are read; is this the right file?",
