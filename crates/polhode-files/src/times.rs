@@ -126,6 +126,8 @@ struct Place {
     unit: Option<TimeUnit>,
     /// Whether numbers are Julian dates.
     is_julian: bool,
+    /// Why they are none that are read, and what to do.
+    refused: Option<(String, &'static str)>,
     delimiter: Delimiter,
     /// Columns of the first line; with one, a date may hold a blank.
     columns: usize,
@@ -187,7 +189,9 @@ impl Times<'_> {
                 // of a row that tells its place itself a comment above it may still tell the unit
                 let says_more = |named: &Place| match &own {
                     Err(_) => true,
-                    Ok((_, is_header)) => !is_header && (named.unit.is_some() || named.is_julian),
+                    Ok((_, is_header)) => {
+                        !is_header && (named.unit.is_some() || named.is_julian || named.refused.is_some())
+                    }
                 };
                 let named = header.as_deref().map(|header| place(header, asked.0, asked.1));
                 let named = match named {
@@ -200,6 +204,9 @@ impl Times<'_> {
                     Some(place) => (Place { delimiter, ..place }, false),
                     None => own.map_err(|(rule, remedy)| lines.refused(rule).with_remedy(&remedy))?,
                 };
+                if let Some((rule, remedy)) = &place.refused {
+                    return Err(lines.refused(Rule::Other(rule.clone())).with_remedy(remedy));
+                }
                 *found = Some(place);
                 if is_header {
                     continue;
@@ -279,13 +286,20 @@ impl Place {
 /// From the first line: where the times stand, and whether the line is a header. Else a rule and a remedy.
 fn place(line: &str, wanted: Option<&str>, flag: &str) -> Result<(Place, bool), (Rule, String)> {
     let delimiter = Delimiter::of(line);
-    if wanted.is_none() && is_moment(line).is_ok() {
-        let column =
-            Place { column: 0, name: "t".into(), unit: None, is_julian: false, delimiter, columns: 1 };
+    if wanted.is_none() && is_time(line) {
+        let column = Place {
+            column: 0,
+            name: "t".into(),
+            unit: None,
+            is_julian: false,
+            refused: None,
+            delimiter,
+            columns: 1,
+        };
         return Ok((column, false));
     }
     let cells = cells(line, delimiter);
-    let is_header = cells.iter().all(|cell| is_moment(cell).is_err());
+    let is_header = !cells.iter().any(|cell| is_time(cell));
     let names: Vec<Name> = cells.iter().map(|cell| Name::of(cell)).collect();
     let by_number =
         |text: &str| text.parse::<usize>().ok().filter(|n| (1..=cells.len()).contains(n)).map(|n| n - 1);
@@ -301,6 +315,7 @@ fn place(line: &str, wanted: Option<&str>, flag: &str) -> Result<(Place, bool), 
         None if cells.len() == 1 && (!is_header || unit_of(&names[0]).is_some() || is_julian(&names[0])) => {
             (Some(0), String::new())
         }
+        None if cells.len() == 1 && less_an_offset(&names[0]).is_some() => (Some(0), String::new()),
         None => (ranked().filter(|_| is_header), format!("name the column of times by {flag}")),
     };
     let Some(column) = found else {
@@ -315,14 +330,12 @@ fn place(line: &str, wanted: Option<&str>, flag: &str) -> Result<(Place, bool), 
         ));
     }
     let name = if is_header { cells[column].clone() } else { "t".into() };
-    if is_header && names[column].letters.starts_with("mjd") {
-        let rule = format!("column '{}' has modified Julian dates", visible(&name));
-        return Err((Rule::Other(rule), "write Julian dates, which are 2400000.5 more".into()));
-    }
+    let refused = less_an_offset(&names[column]).filter(|_| is_header);
+    let refused = refused.map(|(what, remedy)| (format!("column '{}' has {what}", visible(&name)), remedy));
     let is_julian = is_header && is_julian(&names[column]);
     let unit = match names[column].time_unit() {
         _ if is_julian => None,
-        Some((text, None)) if is_header && names[column].time_rank().is_some() => {
+        Some((text, None)) if is_header && refused.is_none() && names[column].time_rank().is_some() => {
             let rule = Rule::Other(format!("column '{}' is in '{}'", visible(&name), visible(text)));
             return Err((rule, "known units of time: s, ms, us, ns, min, h, d".into()));
         }
@@ -330,12 +343,30 @@ fn place(line: &str, wanted: Option<&str>, flag: &str) -> Result<(Place, bool), 
         _ if is_header => unit_of(&names[column]),
         _ => None,
     };
-    Ok((Place { column, name, unit, is_julian, delimiter, columns: cells.len() }, is_header))
+    Ok((Place { column, name, unit, is_julian, refused, delimiter, columns: cells.len() }, is_header))
+}
+
+/// Whether a cell is a time; JD-2450000 is the name of a column.
+fn is_time(cell: &str) -> bool {
+    !cell.starts_with("JD-") && is_moment(cell).is_ok()
 }
 
 /// Whether a name is that of Julian dates: as they are, or of the barycentre or the Sun.
 fn is_julian(name: &Name) -> bool {
     ["jd", "bjd", "hjd", "julian"].iter().any(|stem| name.letters.starts_with(stem))
+}
+
+/// What a column has whose name is that of Julian dates less an offset, as MJD, TJD and BJD-2457000, and what to do.
+fn less_an_offset(name: &Name) -> Option<(&'static str, &'static str)> {
+    let begins = |stems: &[&str]| stems.iter().any(|stem| name.letters.starts_with(stem));
+    let long_number = || name.letters.split(|c: char| !c.is_ascii_digit()).any(|digits| digits.len() > 4);
+    if begins(&["mjd", "bmjd", "hmjd"]) {
+        Some(("modified Julian dates", "write Julian dates, which are 2400000.5 more"))
+    } else if begins(&["rjd", "tjd", "btjd", "bkjd"]) || is_julian(name) && long_number() {
+        Some(("Julian dates less an offset", "write whole Julian dates"))
+    } else {
+        None
+    }
 }
 
 /// The unit of time that is the whole name of a column.
@@ -468,6 +499,11 @@ mod tests {
                 ", line 2, column 1 (JD_UTC): '2451545.5': is a Julian date; give",
             ),
             ("MJD,mag\n59000.5,9\n", Some("MJD"), ", line 1: column 'MJD' has modified Julian dates; write"),
+            ("# MJD\n59000.5\n", None, ", line 2: column 'MJD' has modified Julian dates; write"),
+            ("HMJD\n59000.5\n", None, ", line 1: column 'HMJD' has modified Julian dates; write"),
+            ("HJD-2450000\n9000.5\n", None, ", line 1: column 'HJD-2450000' has Julian dates less an offset"),
+            ("JD-2450000\n9000.5\n", None, ", line 1: column 'JD-2450000' has Julian dates less an offset"),
+            ("BTJD (d),mag\n1325.3,9\n", Some("1"), ", line 1: column 'BTJD (d)' has Julian dates less an"),
             (
                 "# time in minutes\n1\n",
                 None,
