@@ -140,6 +140,10 @@ fn what_cannot_be_met_is_refused_with_the_reason() {
     }
     let rest = body.state(UnitQuaternion::identity(), Vector3::zeros()).unwrap();
     assert!(matches!(advise(&body, &rest, &Demand::new(1.0, 1e-6)), Err(AdviseError::AtRest)));
+    let braked = body.with(Force::drag(0.1, 0.0).unwrap());
+    let mut demand = Demand::new(1.0, 1e-6);
+    demand.energy_error = Some(1e-6);
+    assert!(matches!(advise(&braked, &start, &demand), Err(AdviseError::NotConserved)));
 }
 
 /// A law in `f64` alone cannot be judged in double-double; a torque that starts a body from rest can.

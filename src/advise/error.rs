@@ -29,8 +29,7 @@ pub enum AdviseError {
     },
     /// An energy error of a motion that does not conserve energy.
     #[error(
-        "what acts on the body, or the motor of a wheel, does not conserve its energy, and the error of it has no meaning; leave the \
-         demand on it out"
+        "the torques on the body, or the motor of a wheel, do not conserve its energy, so that no energy error can be limited; leave it out"
     )]
     NotConserved,
     /// The start is not usable.

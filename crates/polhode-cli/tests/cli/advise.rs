@@ -53,7 +53,7 @@ fn what_cannot_be_advised_is_refused_with_flag_value_and_remedy() {
         ("--until -1 --attitude-error 1e-6", ["--until", "is not positive"]),
         (
             "--until 10 --attitude-error 1e-6 --energy-error 1e-6 --drag 0.1",
-            ["--energy-error: ", "does not conserve its energy"],
+            ["--energy-error: ", "do not conserve its energy"],
         ),
     ] {
         refused(&format!("advise {BODY} {flags}"), &says);
