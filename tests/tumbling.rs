@@ -172,6 +172,23 @@ fn elements_without_a_motion_are_refused() {
 }
 
 #[test]
+fn periods_next_to_those_of_a_spin_have_a_motion_or_are_refused() {
+    let apophis = Inertia::from_moments([0.61, 0.965, 1.0]).unwrap();
+    for mode in [Mode::LongAxis, Mode::ShortAxis] {
+        let point = |ratio| TumblingElements::new(mode, [1.0, ratio]).point(&apophis);
+        let Err(TumblingError::Ratio { least, .. }) = point(1e-3) else { panic!("{mode:?}") };
+        let mut ratio = least;
+        for _ in 0..8 {
+            ratio = ratio.next_up();
+            if let Ok(point) = point(ratio) {
+                let start = FreeMotion::from_point(&apophis, point).at(0.0).unwrap();
+                assert!(start.momentum().norm() > 0.0, "{mode:?} at {ratio:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_steady_spin_has_an_axis_and_a_rate() {
     let spin = |moments: [f64; 3], omega: [f64; 3]| {
         let inertia = Inertia::from_moments(moments).unwrap();

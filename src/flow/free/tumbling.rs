@@ -276,13 +276,15 @@ impl TumblingElements {
         let least = (Dd::ONE / circulation + turns).to_f64();
         let (mut low, mut high) = (0.0, core::f64::consts::FRAC_PI_2.next_down());
         let most = ratio(high).unwrap_or(f64::INFINITY);
+        let outside = TumblingError::Ratio { ratio: wanted, mode: self.mode, least, most };
         if !(wanted > least && wanted < most) {
-            return Err(TumblingError::Ratio { ratio: wanted, mode: self.mode, least, most });
+            return Err(outside);
         }
         loop {
             let middle = 0.5 * (low + high);
             if middle <= low || middle >= high {
-                return Ok(middle);
+                // in the last digits of the bounds the lean is lost
+                return ratio(middle).map(|_| middle).ok_or(outside);
             }
             // a lean that is lost in rounding has the ratio of the spin
             if ratio(middle).unwrap_or(least) < wanted { low = middle } else { high = middle }
