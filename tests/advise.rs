@@ -50,6 +50,8 @@ fn the_advice_meets_the_demand() {
                     .all(|other| other.seconds.value >= advice.best.seconds.value || !other.whole_time),
                 "{advice:?}"
             );
+            let meets = |other: &Choice| other.attitude_error.value <= wanted;
+            assert!(advice.others.iter().all(meets), "{advice:?}");
         }
     }
 }

@@ -158,8 +158,11 @@ impl<'a> Calibration<'a> {
                 let seen = first.choice.whole_time && self.excess(&first.choice) + self.doubt() <= TAKEN.1;
                 if seen {
                     fit.push(first.choice)
-                } else {
+                } else if self.excess(&first.choice) <= 1.0 {
                     rest.push(first.choice)
+                } else {
+                    // it may still be fit, as far as its short run can tell, and is not called so
+                    unfit.push((candidate.name.clone(), Some(first.choice.attitude_error.value)));
                 }
                 continue;
             }
