@@ -83,6 +83,8 @@ fn repaired(model: &Model) -> (String, String) {
         told = "  nothing to repair\n".into();
     }
     changes.sort_by_key(|(range, _)| range.start);
+    // copies of a <replicate> have one tensor, which stands there once
+    changes.dedup_by(|one, other| one.0 == other.0);
     let mut text = String::with_capacity(model.text.len());
     let mut end = 0;
     for (range, value) in changes {

@@ -169,7 +169,16 @@ fn a_repaired_copy_differs_by_its_tensors_alone() {
         "<sdf version='1.6'><model name='m'><link name='a'><inertial><mass>1</mass><inertia>\
          <ixx>1</ixx><iyy>1</iyy><izz> 3 </izz></inertia></inertial></link></model></sdf>\n",
     );
-    for (line, copy) in [("mjcf list.xml", "copies/list.xml"), ("sdf text.sdf", "copies/text.sdf")] {
+    scratch.file(
+        "replicated.xml",
+        "<mujoco><replicate count='2'><body name='a'><inertial pos='0 0 0' mass='1' diaginertia='1 1 3'/></body>\
+         </replicate></mujoco>\n",
+    );
+    for (line, copy) in [
+        ("mjcf list.xml", "copies/list.xml"),
+        ("sdf text.sdf", "copies/text.sdf"),
+        ("mjcf replicated.xml", "copies/replicated.xml"),
+    ] {
         assert_eq!(scratch.run(&format!("{line} --repair copies")).code, 1);
         let (kind, _) = line.split_once(' ').unwrap();
         let again = scratch.run(&format!("{kind} {copy}"));
