@@ -316,6 +316,18 @@ mod tests {
         assert_eq!(found[0], ("b".to_string(), String::new()));
     }
 
+    /// Turns of k times (90°, 90°) about x and then the turned y take x to x, y and −x; their places are 0, 2 x and 2 x + 2 y.
+    #[test]
+    fn the_angles_of_copies_are_multiplied() {
+        let text = "<body name='b'><replicate count='3' offset='2 0 0' euler='90 90 0'>\
+                    <geom size='0.1' mass='1' pos='1 0 0'/></replicate></body>";
+        let body = read(Language::Mjcf, Path::new("model"), text, None).unwrap().remove(0);
+        let expected = nalgebra::Vector3::new(4.0 / 3.0, 1.0, 0.0);
+        assert!((body.center_of_mass - expected).norm() < 1e-14, "{}", body.center_of_mass);
+        let found = defects(Language::Mjcf, "<body name='b'><replicate count='2' quat='0 1 0 0'/></body>");
+        assert_eq!(found[0].1, "model:1: <replicate>: quat does not belong here; write euler");
+    }
+
     #[test]
     fn a_full_tensor_of_mjcf_is_not_turned() {
         let of = |attributes: &str| {

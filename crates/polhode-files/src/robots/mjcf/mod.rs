@@ -11,11 +11,11 @@ mod orientation;
 
 use std::path::Path;
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::inertia::MassProperties;
 
 use super::element::Element;
-use super::pose::Pose;
+use super::pose::{Pose, euler, quarter_turns_exact};
 use super::{Given, is_massless, link, positive, writing};
 use compiler::{Compiler, Source};
 use defaults::Defaults;
@@ -202,27 +202,36 @@ impl<'e> Model<'e> {
         suffix: &str,
         geoms: &mut Option<Geoms<'e>>,
     ) {
-        let read = || -> Result<(usize, Pose), String> {
+        let read = || -> Result<(usize, Vector3<f64>, [f64; 3]), String> {
             let [count] = element.needed::<1>("count")?;
             if count < 0.0 || count.fract() != 0.0 {
                 return Err(element.error(&format!("count: {count} is no number of copies")));
             }
-            let at = Vector3::from(element.optional::<3>("offset")?.unwrap_or_default());
-            let turn = self.compiler.pose(element)?.turn;
-            Ok((count as usize, Pose { at, turn }))
+            let offset = Vector3::from(element.optional::<3>("offset")?.unwrap_or_default());
+            let known = |turn: &&&str| **turn != "euler" && element.attribute(turn).is_some();
+            if let Some(other) = ATTRIBUTES.iter().find(known) {
+                return Err(element.error(&format!("{other} does not belong here; write euler")));
+            }
+            self.compiler.pose(element)?;
+            let angles = element.optional::<3>("euler")?.unwrap_or_default();
+            Ok((count as usize, offset, angles.map(|angle| angle * self.compiler.angle)))
         };
         match read() {
-            Ok((count, step)) => {
+            Ok((count, offset, angles)) => {
                 let digits = count.saturating_sub(1).to_string().len();
                 let separator = element.attribute("sep").unwrap_or_default();
-                let mut copy = frame;
+                let mut at = Vector3::zeros();
                 for k in 0..count {
                     if self.walked >= MOST_ELEMENTS {
                         lack(geoms, &element.error("not all of its copies are examined"));
                         return;
                     }
+                    // the angles are multiplied, which about several axes is no power of one turn
+                    let turned = euler(angles.map(|angle| angle * k as f64), &self.compiler.sequence);
+                    let turn = turned.map_or_else(UnitQuaternion::identity, quarter_turns_exact);
+                    let copy = frame.around(&Pose { at, turn });
                     self.walk(element, copy, class, &format!("{suffix}{separator}{k:0digits$}"), geoms);
-                    copy = copy.around(&step);
+                    at += turn * offset;
                 }
             }
             Err(defect) => {
