@@ -211,6 +211,18 @@ mod tests {
     }
 
     #[test]
+    fn what_the_format_has_for_a_link_of_sdf_that_states_nothing_is_said() {
+        let text = format!(
+            "<world name='w'><model name='m'><link name='a'/><link name='b'>{INERTIAL}</link></model>\
+             <state><model name='m'><link name='a'><pose>0 0 1 0 0 0</pose></link></model></state></world>"
+        );
+        let found = read(Language::Sdf, Path::new("model"), &text, None).unwrap();
+        let said: Vec<(bool, bool)> =
+            found.iter().map(|link| (link.massless, link.remark.is_some())).collect();
+        assert_eq!(said, [(true, true), (false, false)], "{found:?}");
+    }
+
+    #[test]
     fn settings_that_cannot_be_read_are_defects() {
         let model = |settings: &str| {
             let body = "<body name='b'><geom type='box' size='1 2 3' mass='1'/></body>";

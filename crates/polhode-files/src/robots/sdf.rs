@@ -24,9 +24,17 @@ fn collect(element: &Element, scope: &str, scoped: bool, found: &mut Vec<Given>)
         match child.tag.as_str() {
             "model" if scoped => collect(child, &format!("{scope}{name}::"), scoped, found),
             "link" => {
-                let given = child.single("inertial").and_then(|inertial| inertial.map_or(Ok(None), stated));
-                found.push(link(&format!("{scope}{name}"), child, given));
+                let inertial = child.single("inertial");
+                let is_silent = matches!(inertial, Ok(None));
+                let given = inertial.and_then(|inertial| inertial.map_or(Ok(None), stated));
+                let mut given = link(&format!("{scope}{name}"), child, given);
+                if is_silent {
+                    given.add_remark("states no <inertial>, for which the format has 1 kg and 1 kg m^2");
+                }
+                found.push(given);
             }
+            // which names links again
+            "state" => {}
             "inertial" => found.push(link(scope, child, stated(child))),
             "include" if matches!(element.tag.as_str(), "sdf" | "world" | "model") => {
                 let uri = child.child("uri").and_then(|uri| uri.text.as_ref());
