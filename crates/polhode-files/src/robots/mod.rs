@@ -273,12 +273,13 @@ mod tests {
     }
 
     #[test]
-    fn what_mujoco_refuses_of_geoms_with_meshes_is_a_defect() {
+    fn what_mujoco_refuses_of_meshes_and_shells_is_a_defect() {
         for (mesh, geom, says) in [
             ("", "type='mesh' mesh='m' shellinertia='true'", "<geom>: shellinertia is of primitives alone"),
             ("", "type='mesh' mesh='m' fromto='0 0 0 0 0 1'", "<geom>: fromto does not belong to the type"),
             ("", "size='1' shellinertia='True'", "<geom>: shellinertia: 'True' is unknown; known:"),
             ("class='none'", "type='mesh' mesh='m'", "<mesh>: no default class 'none'"),
+            ("", "type='cylinder' size='0.1' shellinertia='true'", "it must be a finite number above zero"),
         ] {
             let defect = with_mesh("", mesh, geom).defect.unwrap_or_default();
             assert!(defect.contains(says), "{mesh} {geom}: {defect}");

@@ -153,8 +153,10 @@ impl<'e> Geom<'e, '_> {
                 )));
             }
         };
+        // which refuses sizes that no solid has, and no shell either
+        let whole = solid.with(amount).map_err(|error| self.element.error(&error.to_string()))?;
         if !self.is_shell()? {
-            return solid.with(amount).map_err(|error| self.element.error(&error.to_string()));
+            return Ok(whole);
         }
         let (area, [x, y, z]) = surface(kind, [a, b, c]);
         let tensor = Matrix3::from_diagonal(&Vector3::new(y + z, x + z, x + y));
