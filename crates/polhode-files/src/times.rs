@@ -260,7 +260,13 @@ impl Place {
             return Err(refused(rule).with_remedy("give the date of t = 0 by --epoch"));
         }
         match (self.unit, number.parse::<f64>()) {
-            (Some(unit), Ok(value)) if value.is_finite() => Ok(unit.seconds(value)),
+            (Some(unit), Ok(value)) if value.is_finite() => match unit.seconds(value) {
+                time if time.is_finite() => Ok(time),
+                _ => {
+                    let rule = Rule::Other("is too long a time for a double".into());
+                    Err(refused(rule).with_remedy("leave the row out"))
+                }
+            },
             _ => seconds(&number, epoch).map_err(|error| match error.split_once("; ") {
                 // why it is no date, or cannot count from that of t = 0
                 Some((reason, remedy)) if epoch.is_some() => line
@@ -487,6 +493,7 @@ mod tests {
                 None,
                 ", line 1: no column for time; the header has 'time_min'; name the column",
             ),
+            ("t (d)\n1e308\n", None, ", line 2, column 1 (t (d)): '1e308': is too long a time for a double"),
             ("t (ticks)\n1\n", None, ", line 1: column 't (ticks)' is in 'ticks'; known units of time"),
             (
                 "jd\n2451545.5\n",
