@@ -29,15 +29,25 @@ use crate::report::identifiability::Identifiability;
 use crate::report::mirror::{mirror_sigmas, mirrored};
 use crate::report::model::models;
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, WithoutSegment};
-use crate::report::scale::{Noise, by_prior, check_constant, check_same, scale_of};
+use crate::report::scale::{Noise, Scale, by_prior, check_constant, check_same, scale_of};
 use crate::report::torque_free::{InvariantTrend, Whiteness};
 use crate::report::warnings::{Doubts, of_likelihood, of_rates};
 use crate::settings::Settings;
+use crate::settings::known::Known;
 use crate::settings::torque::TorqueModel;
 use crate::signal::stretch::Stretch;
 use crate::thresholds::bound::OPEN;
 use crate::thresholds::likelihood::{NARROW, PARTED};
 use crate::verdict::prior::{check_agreement, consistent};
+
+/// Of which stretches a size is asked.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Of {
+    /// All: the size of the answer.
+    All,
+    /// Those of one segment, which is compared with others.
+    Segment,
+}
 
 /// How the direction of attitudes was told.
 #[derive(Clone, Copy, Debug)]
@@ -105,15 +115,18 @@ pub(crate) fn report(
     let has_attitudes = free.followed.tracks.iter().any(Track::has_attitudes);
     let Levels { attitude, rate } = information.levels;
     let (attitude, rate) = if has_attitudes { (attitude, 0.0) } else { (0.0, rate) };
-    let (inertia, inertia_covariance) = absolute(
-        settings,
-        (&rates, rate * rate, Some(attitude)),
-        free.read.unit,
-        model_of(free.torque),
-        &shape.tensor(),
-        &(on_face * on_face.transpose()),
-        &answer.x,
-    )?;
+    let (j, both) = (shape.tensor(), on_face * on_face.transpose());
+    let scale = |known: Known, stretches: &[Stretch], of: Of| {
+        // of a segment as much as a straight line through the turns leaves open of its slope
+        let slope = match of {
+            Of::All => 0.0,
+            Of::Segment => attitude / stretches.iter().map(Stretch::duration).sum::<f64>(),
+        };
+        let variance = rate * rate + 12.0 * slope * slope;
+        scale_of(known, stretches, free.read.unit, &j, Noise { variance, is_in_rates: false })
+    };
+    let (inertia, inertia_covariance) =
+        absolute(settings, &rates, model_of(free.torque), &j, &both, &answer.x, scale)?;
     let residuals = residuals(free, information.levels)?;
     let entries = entries_of_coordinates();
     let bound = information.curvature.cholesky().map(|c| c.inverse());
@@ -304,33 +317,24 @@ fn fitted_rates(free: &Free) -> Vec<Stretch> {
     each.collect()
 }
 
-/// The absolute tensor by the rates of a fitted motion, where something gives its size, and its covariance; `torque` was fitted, and
-/// readings of the rates had a component of the noise with that `variance`, in units of the fit. The motion of each segment was told by attitudes
-/// with a noise of the deviation `attitude`; `None` of motions that torques at random change.
+/// The absolute tensor by the rates of a fitted motion, where something gives its size, and its covariance; `torque` was fitted. `scale` is the
+/// size by the stretches of the motion, of all of them or of those of one segment.
 pub(super) fn absolute(
     settings: &Settings,
-    (rates, variance, attitude): (&[Stretch], f64, Option<f64>),
-    unit: f64,
+    rates: &[Stretch],
     torque: TorqueModel,
     j: &Matrix3<f64>,
     covariance: &Form,
     x: &Coordinates,
+    scale: impl Fn(Known, &[Stretch], Of) -> Scale,
 ) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
     let prior = settings.prior.as_ref().map(Prior::told).transpose()?.filter(|prior| prior.sized);
     let Some(known) = settings.known else {
         return prior.map_or(Ok((None, None)), |prior| by_prior(j, &prior, covariance, x));
     };
     check_constant(known, &torque_columns(torque))?;
-    if let Some(attitude) = attitude {
-        let of_segment = |segment: &[Stretch], _: usize| {
-            // as much as a straight line through the turns leaves open of its slope
-            let slope = attitude / segment.iter().map(Stretch::duration).sum::<f64>();
-            let variance = variance + 12.0 * slope * slope;
-            scale_of(known, segment, unit, j, Noise { variance, is_in_rates: false })
-        };
-        check_same(known, rates, covariance, 1.0, of_segment)?;
-    }
-    let scale = scale_of(known, rates, unit, j, Noise { variance, is_in_rates: false });
+    check_same(known, rates, covariance, 1.0, |segment, _| scale(known, segment, Of::Segment))?;
+    let scale = scale(known, rates, Of::All);
     let (inertia, covariance) = scale.sized(known, prior.as_ref(), j, covariance, 1.0, None)?;
     Ok((Some(inertia), Some(covariance)))
 }

@@ -15,14 +15,16 @@ use crate::report::answer::{Answer, of_entries, ratios, sigmas};
 use crate::report::attitudes::AttitudeFit;
 use crate::report::deviations::{Deviations, deviations};
 use crate::report::estimate::{Estimate, Method, Residuals};
-use crate::report::exact::{Told, absolute, identify};
+use crate::report::exact::{Of, Told, absolute, identify};
 use crate::report::model::models;
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, WithoutSegment};
+use crate::report::scale::{Noise, Scale, scale_of};
 use crate::report::torque_free::Whiteness;
 use crate::report::warnings::of_smoothed;
 use crate::settings::Settings;
+use crate::settings::known::Known;
 use crate::settings::torque::TorqueModel;
-use crate::signal::covariance::{Shape, acceleration_density};
+use crate::signal::covariance::{acceleration_density, torque_shape};
 use crate::signal::stretch::Stretch;
 use crate::smoothed::choice::Chosen;
 use crate::verdict::prior::{check_agreement, consistent};
@@ -52,7 +54,11 @@ pub(crate) fn report(
         .tracks
         .iter()
         .zip(&found.paths)
-        .map(|(track, path)| Stretch::new(track.times.clone(), path.iter().map(|at| at.rate).collect()))
+        .zip(&read.used)
+        .map(|((track, path), &(segment, _))| {
+            let rates = path.iter().map(|at| at.rate).collect();
+            Stretch { segment, ..Stretch::new(track.times.clone(), rates) }
+        })
         .collect();
     let identifiability = identify(&rates, &found.at.x, &information);
     let prior = settings.prior.as_ref().map(|prior| consistent(prior, settings)).transpose()?;
@@ -82,8 +88,12 @@ pub(crate) fn report(
     let (sigma_principal, sigma_axes) = sigmas(&on_face, &v, &moments);
     let ratios = ratios(&on_face, &v, &moments);
     let (j, both) = (shape.tensor(), on_face * on_face.transpose());
+    let noise_sigma = found.variance.sqrt() * excess.sqrt();
+    let torques = torque_shape(found.level.axes(), &j) * (found.level.torque * found.variance);
+    let scale =
+        |known: Known, path: &[Stretch], _: Of| size(known, path, read.unit, &j, noise_sigma, torques);
     let (inertia, inertia_covariance) =
-        absolute(settings, (&rates, 0.0, None), read.unit, chosen.model, &j, &both, &answer.x)?;
+        absolute(settings, &rates, chosen.model, &j, &both, &answer.x, scale)?;
     let residuals: Vec<Residuals> = found
         .whitened
         .iter()
@@ -101,7 +111,6 @@ pub(crate) fn report(
         })
         .collect();
     let density = torque_noise(chosen, read.unit, &j);
-    let noise_sigma = found.variance.sqrt() * excess.sqrt();
     let left_out: usize = found.tracks.iter().flat_map(|t| &t.used).filter(|used| !**used).count();
     let attitudes = AttitudeFit {
         noise_sigma,
@@ -170,8 +179,28 @@ pub(crate) fn report(
 /// Power spectral density of the angular acceleration, (rad/s²)² s.
 fn torque_noise(chosen: &Chosen, unit: f64, j: &Matrix3<f64>) -> f64 {
     let level = chosen.found.level;
-    let shape = if level.shape == 0 { Shape::Moments } else { Shape::Alike };
-    level.torque * chosen.found.variance * acceleration_density(shape, j) * unit * unit * unit
+    level.torque * chosen.found.variance * acceleration_density(level.axes(), j) * unit * unit * unit
+}
+
+/// The size by the rates of a path, in this unit, on which torque noise of the density `torques` acts: what is known has walked from the start of
+/// each segment to its samples. The attitudes of the path had a component of the noise with that deviation: a straight line through the turns
+/// leaves as much open of its slope.
+fn size(
+    known: Known,
+    path: &[Stretch],
+    unit: f64,
+    j: &Matrix3<f64>,
+    noise: f64,
+    torques: Matrix3<f64>,
+) -> Scale {
+    let (mut slopes, mut samples) = (0.0, 0.0);
+    for s in path {
+        let (slope, count) = (noise / s.duration(), s.times.len() as f64);
+        slopes += 12.0 * slope * slope * count;
+        samples += count;
+    }
+    let noise = Noise { variance: slopes / samples, is_in_rates: false };
+    scale_of(known, path, unit, j, noise).walking(path, unit, |_| torques)
 }
 
 fn torque(chosen: &Chosen, excess: f64, unit: f64, is_chosen: bool) -> FittedTorque {
@@ -224,4 +253,76 @@ fn summaries(
         each.iter_mut().for_each(|s| s.weight /= sum);
     }
     each
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    use crate::physical::coordinates::Coordinates;
+    use crate::report::parts::quantile;
+    use crate::signal::covariance::Shape;
+    use crate::thresholds::noise::SURE;
+
+    const COUNT: usize = 10;
+    const STEP: f64 = 0.3;
+
+    fn body() -> Matrix3<f64> {
+        Matrix3::from_diagonal(&Vector3::new(0.25, 0.3, 0.45))
+    }
+
+    /// A segment of steady spin about the axis of the largest moment.
+    fn spin(segment: usize, rate: f64) -> Stretch {
+        let times = (0..COUNT).map(|k| STEP * k as f64).collect();
+        Stretch { segment, ..Stretch::new(times, vec![Vector3::z() * rate; COUNT]) }
+    }
+
+    /// Of a walk from its start, the sum of the covariances of all pairs of ten samples is that of the squares from 1 to 9, 285 steps.
+    fn walk(rate: f64, density: f64) -> f64 {
+        let momentum = 0.45 * rate;
+        let growth = 4.0 * momentum * momentum * (0.45 * 0.45 * density);
+        growth * 285.0 * STEP / 100.0
+    }
+
+    /// A size by the momentum goes with the root of its mean square, whose variance is that of the walk and of the slope of the turns.
+    #[test]
+    fn the_deviation_of_a_size_has_the_walk_and_the_noise_of_the_turns() {
+        let (j, noise, density) = (body(), 0.02, 1e-3);
+        let torques = torque_shape(Shape::Moments, &j) * density;
+        let slope = noise / (STEP * (COUNT - 1) as f64);
+        let v = 12.0 * slope * slope;
+        let squares = (j * j).norm_squared();
+        let own = v * (4.0 * libm::pow(0.45, 4.0) + 2.0 * v * squares) / COUNT as f64;
+        let per_mean = 0.5 * (3.0 / 2.0 / 0.45) / (0.45 * 0.45);
+        for segments in [1, 2] {
+            let path: Vec<Stretch> = (0..segments).map(|k| spin(3 + k, 1.0)).collect();
+            let scale = size(Known::Momentum(3.0), &path, 2.0, &j, noise, torques);
+            assert!((scale.trace / (3.0 / 2.0 / 0.45) - 1.0).abs() < 1e-12, "{}", scale.trace);
+            let of_trace = scale.covariance(&j, &Form::zeros(), 1.0, None).fixed_view::<3, 3>(0, 0).sum();
+            // segments walk by themselves
+            let expected = per_mean * per_mean * (own + walk(1.0, density)) / segments as f64;
+            assert!((of_trace / expected - 1.0).abs() < 1e-9, "{segments}: {of_trace:e} {expected:e}");
+        }
+    }
+
+    /// Momenta of segments that are d apart differ where half of d² over the sum of their variances by the walk is more than chance brings.
+    #[test]
+    fn momenta_of_segments_differ_beyond_their_walk() {
+        let (j, path) = (body(), [spin(0, 1.0), spin(2, 1.1)]);
+        let apart = 0.45 * 0.45 * (1.1 * 1.1 - 1.0);
+        let most = apart * apart / (2.0 * quantile(1.0, SURE) * (walk(1.0, 1.0) + walk(1.1, 1.0)));
+        let settings = Settings::default().with_known(Known::Momentum(1.0));
+        for (share, is_refused) in [(0.99, true), (1.01, false)] {
+            let torques = torque_shape(Shape::Moments, &j) * (share * most);
+            let scale = |known: Known, path: &[Stretch], _: Of| size(known, path, 1.0, &j, 0.0, torques);
+            let (covariance, x) = (Form::zeros(), Coordinates::zeros());
+            match absolute(&settings, &path, TorqueModel::None, &j, &covariance, &x, scale) {
+                Err(FitError::SizeDiffers { factor, largest: 2, smallest: 0, .. }) if is_refused => {
+                    assert!((factor / 1.1 - 1.0).abs() < 1e-9, "{factor}");
+                }
+                found => assert!(found.is_ok() && !is_refused, "{share}: {found:?}"),
+            }
+        }
+    }
 }

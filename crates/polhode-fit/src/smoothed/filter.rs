@@ -9,6 +9,7 @@ use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
 use crate::likelihood::motion::Start;
 use crate::likelihood::track::Track;
+use crate::signal::covariance::Shape;
 use crate::smoothed::dynamics::{ALL, Derivative, Law, SHARED, Square};
 
 pub(super) type State = SVector<f64, 6>;
@@ -17,6 +18,13 @@ pub(super) type State = SVector<f64, 6>;
 pub(crate) struct Level {
     pub(crate) torque: f64,
     pub(crate) shape: usize,
+}
+
+impl Level {
+    /// Along which axes the torque noise acts.
+    pub(crate) fn axes(self) -> Shape {
+        if self.shape == 0 { Shape::Moments } else { Shape::Alike }
+    }
 }
 
 /// From one sample of a path to the next.

@@ -3,7 +3,8 @@
 use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
 use polhode::num::Random;
 use polhode_fit::{
-    Estimate, FitError, Method, PoseFault, Poses, Settings, TorqueModel, TorqueNoise, Warning, fit_poses,
+    Estimate, FitError, Known, Method, PoseFault, Poses, Settings, TorqueModel, TorqueNoise, Warning,
+    fit_poses,
 };
 
 use crate::measured::{distance, entries, random_rotation, turned};
@@ -182,4 +183,40 @@ fn the_direction_is_told_under_torques_and_a_level_of_torque_noise_may_be_given(
     let given = fit_poses(&toss.poses, &settings).unwrap();
     assert!((given.per_segment[0].torque_noise / 1e-6 - 1.0).abs() < 0.06, "{:?}", given.per_segment);
     assert!(given.warnings.iter().any(|w| matches!(w, Warning::TorqueNoise { .. })));
+}
+
+/// Under torque noise a momentum that two tosses share at their starts gives the size, to the walk from there; one that they do not share
+/// gives none. A walk of the density S lets the square of the momentum of a toss of the duration T differ from that at its start by the variance
+/// 4 S (L J J L) T/3 in the mean, and J J is nowhere less than the square of its smallest moment.
+#[test]
+#[ignore = "takes seconds, `.ci/run` does it"]
+fn a_momentum_gives_the_size_of_tosses_under_torque_noise_where_they_share_it() {
+    let (seconds, momentum, acceleration) = (12.0, 0.4, 3e-3);
+    let mut random = Random::new(17);
+    let j = turned(SHAPE, &random_rotation(&mut random));
+    let times: Vec<f64> = (0..=120).map(|i| f64::from(i) * seconds / 120.0).collect();
+    let mut toss = |momentum: f64| {
+        let omega = random.normal_vector();
+        let omega = omega * (momentum / (j * omega).norm());
+        let exact = path(&j, omega, &times, Acting::Acceleration(acceleration), &mut random);
+        let mut off = || UnitQuaternion::from_scaled_axis(random.normal_vector() * 5e-3);
+        let measured: Vec<UnitQuaternion<f64>> = exact.iter().map(|q| q * off()).collect();
+        Poses::new("toss", &times, &measured).unwrap()
+    };
+    let settings = Settings::default()
+        .with_torque(TorqueModel::None)
+        .with_torque_noise(TorqueNoise::Given(acceleration * acceleration))
+        .with_known(Known::Momentum(momentum));
+    let (one, alike, faster) = (toss(momentum), toss(momentum), toss(1.3 * momentum));
+    let e = fit_poses(&one.clone().join(alike), &settings).unwrap();
+    let sigma = e.inertia_covariance.unwrap().fixed_view::<3, 3>(0, 0).sum().sqrt();
+    let off = e.inertia.unwrap().tensor().trace() - 1.0;
+    let walk = acceleration * (seconds / 6.0_f64).sqrt() * SHAPE[0] / momentum;
+    assert!(off.abs() < 4.0 * sigma && sigma > 0.9 * walk && sigma < 0.1, "{off} {sigma} {walk}");
+    match fit_poses(&one.join(faster), &settings) {
+        Err(FitError::SizeDiffers { factor, largest: 1, smallest: 0, .. }) => {
+            assert!((factor / 1.3 - 1.0).abs() < 0.05, "{factor}");
+        }
+        other => panic!("{:?}", other.map(|e| e.principal)),
+    }
 }
