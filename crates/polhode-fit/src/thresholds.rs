@@ -63,6 +63,18 @@ thresholds! {
         WHITE: f64 = 1.5,
             "factor between the variance of the noise of all samples and of every second one up to which it is white", "a_stated_noise_is_contradicted_where_the_readings_tell_it";
     }
+    filtered: "noise of readings that was filtered before they were sampled" {
+        SLOW: f64 = 0.15,
+            "largest turn from one sample of the shortest stride to the next, rad: V of a motion then lies below the chord", "a_motion_and_other_noise_are_no_filter";
+        STRIDES: usize = 6,
+            "strides, each twice the one before, three of them at a time: averages over up to eight readings are seen", "averages_are_named_with_their_correlation";
+        FEWEST: usize = 200, "fewest places whose mean square is nearly normal", UNMEASURED;
+        MOST: usize = 20_000, "most places that are looked at", UNMEASURED;
+        SURE: f64 = 5.0,
+            "standard deviations by which white noise and torque noise do not bend V: a chance of 3e-7, at three strides of 1e-6", DERIVED;
+        DITHERED: f64 = 4.0,
+            "variance over that of rounding from which on errors of rounding are white: that of noise of half a step, and rounding", DERIVED;
+    }
     rounds: "rounds of least squares" {
         ROUNDS: usize = 12, "most rounds at one radius; at low noise two or three do", UNMEASURED;
         FULL_ROUNDS: usize = 6, "rounds that take their whole step", UNMEASURED;

@@ -1,7 +1,7 @@
 //! The report, drawn from the record, its weak estimate and the nearest physical tensor.
 
 use crate::report::scale::{Noise, by_prior, check_constant, check_same, scale_of};
-use nalgebra::{DMatrix, Matrix3, SMatrix};
+use nalgebra::{DMatrix, Matrix3, SMatrix, Vector3};
 use polhode::inertia::Inertia;
 use polhode::record::{Record, Spike};
 
@@ -35,6 +35,7 @@ use crate::report::warnings::{Grounds, warnings};
 use crate::settings::Settings;
 use crate::settings::torque::{TorqueModel, TorqueNoise};
 use crate::signal::covariance::{Levels, torque_shape};
+use crate::signal::filtered::filtered;
 use crate::signal::noise;
 use crate::signal::stretch::Stretch;
 use crate::solve::joint::Joint;
@@ -167,7 +168,10 @@ impl Facts<'_> {
         let is_free = free_body && !weak.has_torque_noise();
         let left = motions.as_ref().map(|motions| motions.left).filter(|_| is_free);
         let size = self.size(&together, &at).map(|(_, size)| size);
-        let grounds = Grounds { size, ..self.grounds(open, left) };
+        let rounding = self.record.rounding(&Vector3::from(estimate.quanta)) / self.rms / self.rms;
+        // with wheels a motion is faster than the body turns
+        let filtered = if self.input.is_none() { filtered(self.stretches, rounding) } else { None };
+        let grounds = Grounds { size, filtered, ..self.grounds(open, left) };
         estimate.warnings = warnings(&estimate, &grounds);
         Ok(estimate)
     }
@@ -208,6 +212,7 @@ impl Facts<'_> {
             variance: self.variance,
             open,
             contradicted: self.contradicted(),
+            filtered: None,
             suspect: self.suspect,
             refuted: refuted(&self.chosen.weak, self.stretches, (self.variance, self.rms)),
             as_well: as_well(&self.chosen.models, self.chosen.model),

@@ -77,6 +77,13 @@ pub enum Warning {
         /// The same as the readings show it, rad/s.
         shown: f64,
     },
+    /// The noise of readings is correlated from one to the next, as where these were averaged, filtered or interpolated before they were sampled.
+    Filtered {
+        /// Correlation of the noise of a reading with that of the next.
+        correlation: f64,
+        /// Deviation of the noise over many readings, over that which neighbours show.
+        times: f64,
+    },
     /// The residuals exceed the noise.
     Residuals {
         /// Root mean square of the residuals over the noise.
@@ -325,6 +332,12 @@ impl fmt::Display for Warning {
                 f,
                 "the noise is stated as {stated:.2e} rad/s, and the readings show {shown:.2e} rad/s: check its value and its unit, or leave it \
                  out, so that it is read from the samples"
+            ),
+            Self::Filtered { correlation, times } => write!(
+                f,
+                "the noise of neighbouring readings is correlated by {correlation:.2}, as where a sensor or a log averages, filters or \
+                 interpolates: over many readings it is {times:.1} times what neighbours show; the deviations are too narrow by up to that factor \
+                 where residuals have not enlarged them, and torques at random may be nothing but this noise"
             ),
             Self::Residuals { times, noise } => {
                 let times = if *times < 1e4 { format!("{times:.1}") } else { format!("{times:.1e}") };

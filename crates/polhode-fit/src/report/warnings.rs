@@ -18,6 +18,7 @@ use crate::report::sensor::{Refuted, Suspect};
 use crate::report::torque_free::{InvariantTrend, memory};
 use crate::report::warning::Warning;
 use crate::settings::torque::TorqueModel;
+use crate::signal::filtered::Filtered;
 use crate::solve::weak_estimate::WeakEstimate;
 use crate::units::Others;
 
@@ -74,6 +75,8 @@ pub(super) struct Grounds<'a> {
     pub(super) open: Option<&'a Others>,
     /// The noise that is stated, and another one that the readings show, rad/s.
     pub(super) contradicted: Option<(f64, f64)>,
+    /// The noise of the readings, where they were filtered.
+    pub(super) filtered: Option<Filtered>,
     /// What the fit takes to be zero and would explain the record better.
     pub(super) suspect: Option<&'a Suspect>,
     /// The error of the sensor that is fitted and larger than its prior allows.
@@ -128,6 +131,8 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     }
     list.extend(of_record(record, &e.spikes, e.segments));
     list.extend(grounds.contradicted.map(|(stated, shown)| Warning::StatedNoise { stated, shown }));
+    let of_noise = |Filtered { correlation, times }| Warning::Filtered { correlation, times };
+    list.extend(grounds.filtered.map(of_noise));
     if misfit > (1.0 + DEVIATIONS * (2.0 / e.dof.max(1) as f64).sqrt()).max(RESIDUALS) {
         list.push(Warning::Residuals { times: misfit.sqrt(), noise: e.noise_sigma });
     }

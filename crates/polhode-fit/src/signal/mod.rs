@@ -3,6 +3,7 @@
 pub(crate) mod banded;
 pub(crate) mod both;
 pub(crate) mod covariance;
+pub(crate) mod filtered;
 pub(crate) mod moments;
 pub(crate) mod noise;
 pub(crate) mod normalised;

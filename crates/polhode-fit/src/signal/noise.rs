@@ -13,10 +13,7 @@ pub(crate) fn variance(stretches: &[Stretch]) -> f64 {
     let mut squares: Vec<f64> = Vec::new();
     for s in stretches {
         for (t, w) in s.times.windows(5).zip(s.rates.windows(5)) {
-            let per = 1.0 / (t[4] - t[0]);
-            let c: [f64; 5] = core::array::from_fn(|i| {
-                1.0 / (0..5).filter(|&j| j != i).map(|j| (t[i] - t[j]) * per).product::<f64>()
-            });
+            let c = off_cubic([t[0], t[1], t[2], t[3], t[4]]);
             let norm: f64 = c.iter().map(|c| c * c).sum();
             let left = (0..5).map(|i| w[i] * c[i]).fold(nalgebra::Vector3::zeros(), |a, b| a + b);
             squares.push(left.norm_squared() / (3.0 * norm));
@@ -32,6 +29,12 @@ pub(crate) fn variance(stretches: &[Stretch]) -> f64 {
         count += 1.0;
     }
     if count > 0.0 { sum / count } else { 0.0 }
+}
+
+/// The coefficients of values at five times of a combination that vanishes for every cubic.
+pub(crate) fn off_cubic(t: [f64; 5]) -> [f64; 5] {
+    let per = 1.0 / (t[4] - t[0]);
+    core::array::from_fn(|i| 1.0 / (0..5).filter(|&j| j != i).map(|j| (t[i] - t[j]) * per).product::<f64>())
 }
 
 /// That variance of noise that is white, so that every second sample shows the same. Of a motion whose samples are far apart, and of a sensor

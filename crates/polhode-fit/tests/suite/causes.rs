@@ -113,6 +113,47 @@ fn a_stated_noise_that_is_not_that_of_the_readings_is_named() {
     }
 }
 
+/// Means of two readings have a noise that is correlated by a half, and over many readings ten times the variance that neighbours show. White
+/// noise, readings that a log repeats, and torque noise are not taken for it.
+#[test]
+fn averaged_noise_is_named_and_other_noise_is_not() {
+    let body = Inertia::from_moments(SHAPE).unwrap();
+    let mut random = Random::new(648);
+    let (times, omega) = (sampled(50, 30), Vector3::new(0.3, 1.0, 0.4));
+    let mut exact = |by: &Disturbances| {
+        simulate_with(&body, omega, &times, by, &Gyroscope::default(), &mut random).unwrap()
+    };
+    let free = exact(&Disturbances::default());
+    let driven = exact(&Disturbances::default().with_torque_noise(3e-3));
+    let white: Vec<Vector3<f64>> = times.iter().map(|_| random.normal_vector() * 1e-2).collect();
+    let averaged = (0..times.len()).map(|k| (white[k] + white[k.saturating_sub(1)]) * 0.5);
+    let with = |rates: &[Vector3<f64>], noise: &[Vector3<f64>]| -> Vec<Vector3<f64>> {
+        rates.iter().zip(noise).map(|(rate, noise)| rate + noise).collect()
+    };
+    let mut repeated = with(&free, &white);
+    for k in 0..repeated.len() {
+        repeated[k] = repeated[k - k % 2];
+    }
+    let averaged = with(&free, &averaged.collect::<Vec<_>>());
+    for (name, rates, is_named) in [
+        ("averaged", averaged, true),
+        ("white", with(&free, &white), false),
+        ("repeated", repeated, false),
+        ("torque noise", with(&driven, &white), false),
+    ] {
+        let e = fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap();
+        let found = e.warnings.iter().find_map(|warning| match warning {
+            Warning::Filtered { correlation, times } => Some((*correlation, *times)),
+            _ => None,
+        });
+        assert_eq!(found.is_some(), is_named, "{name}: {:?}", e.warnings);
+        if let Some((correlation, times)) = found {
+            assert!((correlation - 0.5).abs() < 0.15, "{correlation}");
+            assert!((times / 10.0_f64.sqrt() - 1.0).abs() < 0.25, "{times}");
+        }
+    }
+}
+
 /// Torque noise lets |J ω| and ω·J ω walk: their trends scatter as their deviations say.
 #[test]
 fn drifts_under_torque_noise_are_no_surer_than_the_walk_allows() {
