@@ -3,6 +3,7 @@
 use polhode::units::RateUnit;
 use thiserror::Error;
 
+use crate::models::reading_error::two_digits;
 use crate::physical::constraint::Constraint;
 use crate::physical::failure::SolverFailure;
 use crate::poses::fault::PoseFault;
@@ -35,6 +36,10 @@ pub struct ToldComponent {
     /// Its standard deviation.
     pub sigma: f64,
 }
+
+/// What helps against a noise that is stated and is not that of the readings.
+pub(crate) const UNSTATED: &str =
+    "check its value and its unit, or leave it out, so that it is read from the samples";
 
 impl From<FitError> for polhode::Error {
     fn from(error: FitError) -> Self {
@@ -74,6 +79,20 @@ pub enum FitError {
         rms: f64,
         /// Noise of a component, rad/s.
         noise: f64,
+    },
+    /// A quarter and more of the mean square rate would be noise as it is stated, and not as the readings show it.
+    #[error(
+        "the noise is stated as {stated:.2e} rad/s, {} times the {shown:.2e} rad/s that neighbouring readings show; the rates, with a root \
+         mean square of {rms:.3e} rad/s, are too small for the stated one: {}",
+        two_digits(*stated / *shown), UNSTATED
+    )]
+    StatedNoise {
+        /// Root mean square rate, rad/s.
+        rms: f64,
+        /// Noise of a component as it is stated, rad/s.
+        stated: f64,
+        /// The same as neighbouring readings show it, rad/s.
+        shown: f64,
     },
     /// The record determines fewer than five numbers of the tensor.
     #[error("the record does not determine the tensor: {}. {}", .0.verdict(), capital(&.0.next_record()))]
@@ -469,7 +488,7 @@ pub(crate) fn per_cent(share: f64) -> String {
     } else if value >= 1.0 {
         format!("{value:.1} %")
     } else if value >= 1e-3 {
-        format!("{} %", polhode::num::Shown(format!("{value:.1e}").parse().unwrap_or(value)))
+        format!("{} %", two_digits(value))
     } else {
         "less than 0.001 %".into()
     }

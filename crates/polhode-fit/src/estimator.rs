@@ -357,7 +357,16 @@ pub(super) fn read_variance(
     let variance = variance.max(LEAST);
     // the mean square is 1, of which the noise of three components is 3 σ²: a quarter is too much to fit
     if 3.0 * variance > MOST {
-        return Err(FitError::NoRotation { rms, noise: variance.sqrt() * rms });
+        let stated = settings.noise.filter(|_| {
+            let unstated = settings.clone().with_noise(None::<f64>);
+            read_variance(&unstated, record, stretches, rms).is_ok()
+        });
+        let misstated = stated.and_then(|stated| {
+            let rounding = rounding(record.quanta());
+            let shown = noise::contradicting(stretches, variance, rounding, (0.0, 0))?;
+            Some(FitError::StatedNoise { rms, stated, shown: shown.sqrt() * rms })
+        });
+        return Err(misstated.unwrap_or(FitError::NoRotation { rms, noise: variance.sqrt() * rms }));
     }
     Ok(variance)
 }

@@ -38,6 +38,10 @@ fn refusals_say_their_numbers() {
     says(FitError::Exchanged { order: [1, 0, 2], signs: [-1.0, 1.0, -1.0] }, &["(-hy, hx, -hz)"]);
     // noise of a quarter of the mean square: three components of 1/3 of it each
     says(FitError::NoRotation { rms: 1.0, noise: 0.5 }, &["1.000e0 rad/s", "at 1.5e0 rad/s or faster"]);
+    says(
+        FitError::StatedNoise { rms: 1.0, stated: 0.6, shown: 0.01 },
+        &["as 6.00e-1 rad/s, 60 times the 1.00e-2 rad/s", "square of 1.000e0 rad/s", ": check its value"],
+    );
     let driven = |unexplained, growth, pull| FitError::Driven { unexplained, growth, pull };
     says(
         driven(Some(0.37), 0.012, 8.25),

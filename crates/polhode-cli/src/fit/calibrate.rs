@@ -22,7 +22,9 @@ pub(super) fn report(
     let wheel = calibrate_wheel(record, body, settings).map_err(|error| {
         let message = format!("{names}: {error}");
         match error {
-            FitError::NoRotation { .. } | FitError::Solver(_) => Error::Failed(message),
+            FitError::NoRotation { .. } | FitError::StatedNoise { .. } | FitError::Solver(_) => {
+                Error::Failed(message)
+            }
             _ => Error::Input(message),
         }
     })?;

@@ -17,6 +17,7 @@ pub(super) fn reason(error: &FitError) -> String {
         FitError::UntoldSensor => format!(
             "{error} (smaller --gyro-bias, --gyro-scale, --gyro-axis-scales, --gyro-misalignment or --gyro-skew)"
         ),
+        FitError::StatedNoise { .. } => format!("{error} (--noise)"),
         FitError::SizeDiffers { .. } => format!("{error} (--window t0,t1; --trace, --moment)"),
         FitError::Undersampled { .. } => format!("{error} (--rate-unit, --time-unit)"),
         _ => error.to_string(),
@@ -40,6 +41,7 @@ pub(super) fn facts(error: &FitError) -> (Option<Facts>, bool) {
         | FitError::Told(_)
         | FitError::ZeroInputs(_) => (Some(Facts::contradicted()), true),
         FitError::NoRotation { .. }
+        | FitError::StatedNoise { .. }
         | FitError::Solver(_)
         | FitError::Poses(PoseFault::NoTurn { .. } | PoseFault::HalfTurn { .. }) => (None, true),
         _ => (None, false),

@@ -298,6 +298,11 @@ fn unusable_input_is_refused_by_file_line_and_column() {
     let record = scratch.0.join("record.csv").display().to_string();
     output(&format!("{SIMULATE} --until 20 --noise 1e-3 --out {record}"));
     refused(2, &format!("fit {record} --at-most 1,0,0,0.2 --at-least 2,0,0,0.3"), &["exclude each other"]);
+    refused(
+        1,
+        &format!("fit {record} --noise 0.6"),
+        &["record.csv: the noise is stated as 6.00e-1 rad/s", "that neighbouring readings show", "(--noise)"],
+    );
     refused(2, &format!("fit {record} --at-least 0,0,1,0.6"), &["half the trace"]);
     refused(2, &format!("fit {record} --at-least 0,0,0,0.1"), &["limit 1 has the axis"]);
     refused(2, &format!("fit {record} --trace -1"), &["the known quantity is -1"]);

@@ -122,7 +122,7 @@ impl fmt::Display for ReadingError {
 }
 
 /// `x` to two digits.
-fn two_digits(x: f64) -> Shown {
+pub(crate) fn two_digits(x: f64) -> Shown {
     Shown(format!("{x:.1e}").parse().unwrap_or(x))
 }
 

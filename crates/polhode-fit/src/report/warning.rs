@@ -2,7 +2,7 @@
 
 use core::fmt;
 
-use crate::error::{per_cent, with_sigma};
+use crate::error::{UNSTATED, per_cent, with_sigma};
 use crate::models::reading_error::ReadingError;
 use crate::physical::constraint::ActiveConstraint;
 use crate::report::next_step::Origin;
@@ -330,8 +330,7 @@ impl fmt::Display for Warning {
             }
             Self::StatedNoise { stated, shown } => write!(
                 f,
-                "the noise is stated as {stated:.2e} rad/s, and the readings show {shown:.2e} rad/s: check its value and its unit, or leave it \
-                 out, so that it is read from the samples"
+                "the noise is stated as {stated:.2e} rad/s, and the readings show {shown:.2e} rad/s: {UNSTATED}"
             ),
             Self::Filtered { correlation, times } => write!(
                 f,

@@ -53,7 +53,7 @@ fn white(stretches: &[Stretch]) -> Option<f64> {
 }
 
 /// The variance that the samples show, where it surely is another than the `stated` one. `rounding` is that of the readings, and `misfit` the
-/// mean square of so many residuals over the stated variance.
+/// mean square of so many residuals over the stated variance, 0 where there are none.
 ///
 /// Neighbours show nothing of slow noise, and little of the rounding of readings that rest on a step; residuals do.
 pub(crate) fn contradicting(

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_fit::{
-    Disturbances, FitError, Gyroscope, Record, SensorPriors, Settings, TorqueModel, Warning, fit,
+    Disturbances, FitError, Gyroscope, Record, SensorPriors, Settings, TorqueModel, Warning, fit, simulate,
     simulate_with,
 };
 
@@ -152,6 +152,26 @@ fn averaged_noise_is_named_and_other_noise_is_not() {
             assert!((times / 10.0_f64.sqrt() - 1.0).abs() < 0.25, "{times}");
         }
     }
+}
+
+/// A noise that is stated so large that it would hide the rotation is refused with that of the readings, if these tell of a rotation.
+#[test]
+fn a_stated_noise_that_would_hide_the_rotation_is_named_with_that_of_the_readings() {
+    let (times, stated) = (sampled(50, 30), 0.6);
+    let refused = |rates: &[Vector3<f64>]| {
+        let settings = Settings::default().with_noise(stated);
+        fit(&Record::from_samples(&times, rates).unwrap(), &settings).unwrap_err()
+    };
+    let mut random = Random::new(648);
+    let body = Inertia::from_moments(SHAPE).unwrap();
+    let tumbling = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 0.01, &mut random).unwrap();
+    let error = refused(&tumbling);
+    let FitError::StatedNoise { stated: given, shown, .. } = error else { panic!("{error}") };
+    assert!(given == stated && (shown / 0.01 - 1.0).abs() < 0.25, "{given} {shown}");
+    // a stated noise is too large for mere noise too, and nothing is left without it
+    let none: Vec<Vector3<f64>> = times.iter().map(|_| random.normal_vector() * 0.1).collect();
+    let error = refused(&none);
+    assert!(matches!(error, FitError::NoRotation { .. }), "{error}");
 }
 
 /// Torque noise lets |J ω| and ω·J ω walk: their trends scatter as their deviations say.
