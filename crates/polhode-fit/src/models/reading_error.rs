@@ -133,3 +133,77 @@ fn interval(stretches: &[Stretch]) -> f64 {
     let middle = each.len() / 2;
     if each.is_empty() { 0.0 } else { *each.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::signal::stretch::KnownInputs;
+    use nalgebra::Vector3;
+
+    /// Steps of 3, 1 and 2, and of another stretch of 5; wheels about x and z.
+    fn stretches() -> [Stretch; 2] {
+        let of = |times: Vec<f64>| {
+            let count = times.len();
+            let wheel = vec![Vector3::new(2.0, 0.0, -1.0); count];
+            let inputs = Some(KnownInputs { wheel, torque: vec![Vector3::zeros(); count] });
+            Stretch { inputs, ..Stretch::new(times, vec![Vector3::x(); count]) }
+        };
+        [of(vec![0.0, 3.0, 4.0, 6.0]), of(vec![0.0, 5.0])]
+    }
+
+    /// Each error has its columns with the deviation that is plausible for it, and the factor to SI that goes with their units: of rates the
+    /// unit rate of 4 rad/s, of times its inverse, of wheels one over the size of their factor.
+    #[test]
+    fn errors_have_plausible_sizes_in_the_units_of_the_fit() {
+        let (stretches, units) = (stretches(), Units { rms: 4.0, input: -0.5 });
+        let expected = [
+            (ReadingError::Misalignment, 3, LARGEST, 1.0),
+            (ReadingError::AxisScales, 3, LARGEST, 1.0),
+            (ReadingError::Offsets, 3, LARGEST_OFFSET / 4.0, 4.0),
+            // of the steps 1, 2, 3 and 5 the upper one in the middle
+            (ReadingError::Delays, 2, 3.0, 0.25),
+            (ReadingError::Wheel(0), 1, 0.5, 2.0),
+            (ReadingError::Wheel(2), 1, 0.5, 2.0),
+        ];
+        assert_eq!(ReadingError::all(&stretches), expected.map(|(error, ..)| error));
+        for (error, count, size, factor) in expected {
+            let columns = error.columns(&stretches, units);
+            assert_eq!((columns.len(), error.count()), (count, count), "{error}");
+            assert!(columns.iter().all(|column| column.prior == Some(size)), "{error}: {columns:?}");
+            assert_eq!(error.factor(units), factor, "{error}");
+            // no column twice, and each of them is known by its name
+            let names: Vec<&str> = columns.iter().map(|column| column.label().name).collect();
+            let begins = match error {
+                ReadingError::Misalignment => "misalignment_",
+                ReadingError::AxisScales => "scale_",
+                ReadingError::Offsets => "offset_",
+                ReadingError::Delays => "skew_",
+                ReadingError::Wheel(_) => "told_",
+            };
+            assert!(names.iter().all(|name| name.starts_with(begins)), "{names:?}");
+            assert!((1..count).all(|k| !names[..k].contains(&names[k])), "{names:?}");
+        }
+        // of no samples no delay is plausible
+        assert!(ReadingError::Delays.columns(&[], units).iter().all(|column| column.prior == Some(0.0)));
+    }
+
+    /// Wheels are called by their axis, and sizes are told in the units of data sheets.
+    #[test]
+    fn errors_are_told_by_their_axes_and_units() {
+        for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
+            let error = ReadingError::Wheel(axis);
+            assert_eq!(error.to_string(), format!("wheel-{name}"));
+            let words = format!("an error of h{name}, the momentum of the wheels as the record tells it");
+            assert_eq!(error.in_words(), words);
+        }
+        for (error, name, size, text) in [
+            (ReadingError::Misalignment, "misalignment", 1.0_f64.to_radians(), "1 deg"),
+            (ReadingError::AxisScales, "axis-scales", 0.25, "25 %"),
+            (ReadingError::Offsets, "offsets", 2.0_f64.to_radians(), "2 deg/s"),
+            (ReadingError::Delays, "delays", 0.0078, "7.8 ms"),
+            (ReadingError::Wheel(1), "wheel-y", 0.012, "1.2 %"),
+        ] {
+            assert_eq!((error.to_string().as_str(), error.of_size(size).as_str()), (name, text));
+        }
+    }
+}

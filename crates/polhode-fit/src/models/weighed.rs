@@ -111,6 +111,7 @@ pub(crate) fn spread(models: &[Weighed], chosen: TorqueModel) -> Form {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::thresholds::ladder::{FIRST, FURTHER};
 
     fn of(model: TorqueModel, gain: f64, x: f64, deviation: f64) -> Weighed {
         let x = Coordinates::new(x, 0.0, 0.0, 0.0, 0.0);
@@ -180,5 +181,54 @@ mod tests {
         let added = spread(&models, TorqueModel::None).symmetric_eigenvalues();
         // half of 1/6, the square of the largest distance from the sphere
         assert!(added.iter().all(|variance| (0.99..1.01).contains(&(12.0 * variance))), "{added}");
+    }
+
+    /// Drag about three axes has a share where a drag was chosen, an error of the record where a torque was, or where it explains far more than
+    /// chance.
+    #[test]
+    fn models_have_a_share_where_the_choice_asks_for_them() {
+        let error = |gain: f64| Weighed {
+            error: Some((ReadingError::Delays, 1e-3)),
+            ..of(TorqueModel::None, gain, 0.0, 1e-6)
+        };
+        let has = |other: &Weighed, chosen: TorqueModel| {
+            let both = shares(&[of(chosen, 40.0, 0.0, 1e-6), other.clone()], chosen);
+            assert!((both[0] + both[1] - 1.0).abs() < 1e-14);
+            both[1] > 0.0
+        };
+        let drag3 = of(TorqueModel::Drag3, 40.0, 0.0, 1e-6);
+        for (chosen, is_drag) in [
+            (TorqueModel::None, false),
+            (TorqueModel::Constant, false),
+            (TorqueModel::Drag, true),
+            (TorqueModel::Quadratic, true),
+            (TorqueModel::Drag3, true),
+        ] {
+            assert_eq!(has(&drag3, chosen), is_drag, "{chosen}");
+            assert!(has(&of(TorqueModel::Constant, 40.0, 0.0, 1e-6), chosen), "{chosen}");
+            assert_eq!(has(&error(SENSOR), chosen), chosen != TorqueModel::None, "{chosen}");
+            assert!(has(&error(1.01 * SENSOR), chosen), "{chosen}");
+        }
+    }
+
+    /// A score is the gain less one for each column, of an error those of it alone; a choice asks for more, and of none for nothing.
+    #[test]
+    fn scores_and_choices_count_the_columns() {
+        let torque = |model| of(model, 8.0, 0.0, 1e-6);
+        let error = |error| Weighed { error: Some((error, 0.1)), ..torque(TorqueModel::None) };
+        let noisy = Weighed { has_noise: true, ..error(ReadingError::Delays) };
+        assert_eq!(torque(TorqueModel::None).score(), 8.0);
+        assert_eq!(torque(TorqueModel::Quadratic).score(), 7.0);
+        assert_eq!(torque(TorqueModel::Constant).score(), 5.0);
+        assert_eq!(error(ReadingError::Misalignment).score(), 5.0);
+        assert_eq!((error(ReadingError::Delays).score(), noisy.score()), (6.0, 5.0));
+        assert!(torque(TorqueModel::Drag).is_torque(TorqueModel::Drag));
+        assert!(!torque(TorqueModel::Drag).is_torque(TorqueModel::Drag3));
+        assert!(!error(ReadingError::Delays).is_torque(TorqueModel::None));
+        let three = FIRST + 2.0 * FURTHER;
+        let models = [TorqueModel::None, TorqueModel::Drag, TorqueModel::Drag3, TorqueModel::Constant];
+        assert_eq!(models.map(asked), [0.0, FIRST, three, three]);
+        // below a thousandth a weight falls with the share
+        assert_eq!([RARE, 0.5 * RARE].map(weight), [LEAST, 0.5 * LEAST]);
     }
 }

@@ -136,3 +136,82 @@ pub(crate) fn as_well(weighed: &[Weighed], chosen: TorqueModel) -> Option<(Readi
     let (error, size) = best.error.filter(|_| best.score() > torque.score() - AS_WELL)?;
     Some((error, size, best.gain - torque.gain))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physical::coordinates::{Form, coordinates};
+    use nalgebra::{Matrix3, Vector3};
+
+    const DEVIATION: f64 = 1e-3;
+
+    /// A model of moments 0.25, 0.3 and 0.45, whose coordinates have one deviation each and are independent.
+    fn of(model: TorqueModel, error: Option<(ReadingError, f64)>, gain: f64) -> Weighed {
+        let x = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.45, 0.25, 0.3)));
+        let factor = Form::identity() * DEVIATION;
+        Weighed { model, error, has_noise: false, gain, x, factor, held_out: Some(1.5) }
+    }
+
+    /// Of the errors the one of the highest score counts, where that is at most three below the score of the torque; what is told is its
+    /// likelihood over that of the torque.
+    #[test]
+    fn an_error_explains_as_well_within_three_of_the_score() {
+        let torque = of(TorqueModel::Drag, None, 20.0);
+        let error = |error, gain| of(TorqueModel::None, Some((error, 0.25)), gain);
+        let (delays, offsets) = (ReadingError::Delays, ReadingError::Offsets);
+        let found = |errors: &[Weighed], chosen| {
+            let all: Vec<Weighed> = core::iter::once(torque.clone()).chain(errors.iter().cloned()).collect();
+            as_well(&all, chosen)
+        };
+        // the scores are 19, 16.75 and 16.5
+        let both = [error(delays, 18.75), error(offsets, 19.5)];
+        assert_eq!(found(&both, TorqueModel::Drag), Some((delays, 0.25, -1.25)));
+        assert_eq!(found(&both[1..], TorqueModel::Drag), Some((offsets, 0.25, -0.5)));
+        let most = 20.0 - 1.0 - AS_WELL;
+        assert_eq!(found(&[error(delays, most + 2.0)], TorqueModel::Drag), None);
+        assert!(found(&[error(delays, most + 2.0 + 1e-9)], TorqueModel::Drag).is_some());
+        // of no torque, of one that is not among them, and without errors nothing is said
+        assert_eq!(found(&both, TorqueModel::None), None);
+        assert_eq!(found(&both, TorqueModel::Constant), None);
+        assert_eq!(found(&[], TorqueModel::Drag), None);
+    }
+
+    /// Torques and errors are told apart, each with the moments of its tensor and their deviations: the gradients of moments have the squares
+    /// 2/3 and the products −1/3.
+    #[test]
+    fn each_model_has_its_moments_with_their_deviations() {
+        let all = [
+            of(TorqueModel::None, None, 0.0),
+            of(TorqueModel::None, Some((ReadingError::Delays, 2.5e-3)), 7.0),
+            of(TorqueModel::Drag, None, 1.0),
+        ];
+        let torques = models(&all, TorqueModel::None, None);
+        let errors = reading_errors(&all, TorqueModel::None);
+        // a coefficient that gains one weighs as much as none, and an error nothing beside no torque
+        let told: Vec<_> = torques.iter().map(|one| (one.model, one.gain, one.share)).collect();
+        assert_eq!(told, [(TorqueModel::None, 0.0, 0.5), (TorqueModel::Drag, 1.0, 0.5)]);
+        let [error] = &errors[..] else { panic!("{errors:?}") };
+        assert_eq!((error.error, error.size, error.gain), (ReadingError::Delays, 2.5e-3, 7.0));
+        assert_eq!((error.share, error.held_out), (0.0, Some(1.5)));
+        assert_eq!(error.to_string(), "delays 2.5 ms");
+        let near = |found: &[f64], expected: &[f64]| {
+            assert_eq!(found.len(), expected.len());
+            let apart = found.iter().zip(expected).map(|(a, b)| (a / b - 1.0).abs());
+            assert!(apart.fold(0.0, f64::max) < 1e-9, "{found:?} {expected:?}");
+        };
+        let ratios = [25.0 / 45.0, 30.0 / 45.0];
+        // r = a/c varies by (da − r dc)/c
+        let of_ratio = |r: f64| DEVIATION * ((2.0 + 2.0 * r + 2.0 * r * r) / 3.0).sqrt() / 0.45;
+        for one in &torques {
+            assert!(one.unexplained.is_none() && one.held_out == Some(1.5));
+            near(&one.principal, &[0.25, 0.3, 0.45]);
+            near(&one.sigma_principal, &[DEVIATION * (2.0_f64 / 3.0).sqrt(); 3]);
+            near(&one.ratios, &ratios);
+            near(&one.sigma_ratios, &ratios.map(of_ratio));
+        }
+        near(&error.principal, &torques[0].principal);
+        near(&error.sigma_principal, &torques[0].sigma_principal);
+        near(&error.ratios, &torques[0].ratios);
+        near(&error.sigma_ratios, &torques[0].sigma_ratios);
+    }
+}
