@@ -134,4 +134,20 @@ mod tests {
             "(0.0000, -0.6000, 0.8000) is a principal axis if no torque acted, to within products of inertia of 0.0123 of the trace"
         );
     }
+
+    /// At a constant rate of 1 the bound is half of five deviations over ∫ φ: with u = t/R those are √(3 σ² (h/R) ∫ φ'² du) and
+    /// √(8 σ² h R ∫ φ² du), at samples that are h apart.
+    #[test]
+    fn the_bound_of_a_constant_rate_is_that_of_the_integrals() {
+        // ∫ (1 − u²)ⁿ du from −1 to 1 is 2 (2/3) (4/5) … 2n/(2n + 1)
+        let integral = |n: u32| (1..=n).map(f64::from).fold(2.0, |all, k| all * 2.0 * k / (2.0 * k + 1.0));
+        // of φ'² = 64 u² (1 − u²)⁶, with u² = 1 − (1 − u²)
+        let (area, slopes, squares) = (integral(4), 64.0 * (integral(6) - integral(7)), integral(8));
+        let (radius, step, sigma): (f64, f64, f64) = (5.0, 0.05, 1e-3);
+        let of_slopes = (3.0 * step / radius * slopes).sqrt();
+        let of_squares = (8.0 * step * radius * squares).sqrt();
+        let [found] = axes(&[spin()], sigma * sigma)[..] else { panic!() };
+        let expected = 0.5 * SURE * sigma * (of_slopes + of_squares) / (radius * area);
+        assert!((found.product / expected - 1.0).abs() < 1e-3, "{} {expected}", found.product);
+    }
 }

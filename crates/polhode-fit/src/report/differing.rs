@@ -109,3 +109,21 @@ impl Differing {
         DMatrix::from_fn(rows.len(), self.added.len(), |i, k| self.added[k][rows[i]])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Displacements of three columns and the tensor: the squares of a column add up, and of those that are kept the rows stay in their order.
+    #[test]
+    fn displacements_add_their_squares() {
+        let of = |from: f64| DVector::from_fn(8, |k, _| from + k as f64);
+        let differing = Differing { named: Vec::new(), added: vec![of(1.0), of(-3.0)] };
+        assert_eq!([0, 1, 2].map(|k| differing.variance(k)), [10.0, 8.0, 10.0]);
+        assert_eq!(differing.all(), [of(1.0), of(-3.0)]);
+        let kept = differing.of(&[2, 0]);
+        let rows = [[3.0, -1.0], [1.0, -3.0], [4.0, 0.0], [5.0, 1.0], [6.0, 2.0], [7.0, 3.0], [8.0, 4.0]];
+        assert_eq!(kept, DMatrix::from_fn(7, 2, |i, k| rows[i][k]));
+        assert_eq!(differing.of(&[]), DMatrix::from_fn(5, 2, |i, k| rows[i + 2][k]));
+    }
+}

@@ -244,3 +244,152 @@ impl Law {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::simulate::simulate;
+    use polhode::inertia::Inertia;
+    use polhode::num::Random;
+
+    const HERE: Vector3<f64> = Vector3::new(0.3, -0.8, 0.5);
+
+    fn none() -> Inputs {
+        Inputs { wheel: Vec::new(), torque: Vec::new() }
+    }
+
+    /// Of a body of the tensor `j` on which nothing acts.
+    fn free(j: Matrix3<f64>) -> Law {
+        let (damping, torque) = (Matrix3::zeros(), Vector3::zeros());
+        Law { j, inverse: j.try_inverse().unwrap(), damping, quadratic: 0.0, torque, trace: None }
+    }
+
+    fn law() -> Law {
+        let j = Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45);
+        let damping = j * 0.05 + Matrix3::from_diagonal(&Vector3::new(0.01, 0.02, 0.03));
+        Law { damping, quadratic: 0.04, torque: Vector3::new(0.01, -0.02, 0.03), ..free(j) }
+    }
+
+    /// The change of the momentum is p × ω − D ω − c |ω| J ω + τ, and its derivative that of central differences; at rest nothing brakes.
+    #[test]
+    fn the_momentum_changes_by_all_that_acts() {
+        let (law, wheel, torque) = (law(), Vector3::new(0.1, 0.2, -0.3), Vector3::new(-0.02, 0.01, 0.04));
+        let p = law.j * HERE + wheel;
+        let (found, by_momentum) = law.slope(&p, (wheel, torque));
+        let drag = law.damping * HERE + law.j * HERE * (0.04 * HERE.norm());
+        assert!((found - (p.cross(&HERE) - drag + law.torque + torque)).amax() < 1e-14);
+        let h = 1e-5;
+        for k in 0..3 {
+            let moved = |by: f64| law.slope(&(p + Vector3::ith(k, by)), (wheel, torque)).0;
+            let difference = (moved(h) - moved(-h)) / (2.0 * h);
+            // the third derivatives are of order 10, and h²/6 of them is left
+            assert!((difference - by_momentum.column(k)).amax() < 1e-8, "{k}");
+        }
+        let (at_rest, by_momentum) = law.slope(&wheel, (wheel, torque));
+        assert_eq!(at_rest, law.torque + torque);
+        let expected = (wheel.cross_matrix() - law.damping) * law.inverse;
+        assert!((by_momentum - expected).amax() < 1e-14);
+    }
+
+    /// Between two samples what acts changes evenly, at the last one it stays, and where nothing is told it is zero. The trace divides it.
+    #[test]
+    fn inputs_change_evenly_between_samples() {
+        let wheel = vec![Vector3::x() * 8.0, Vector3::y() * 4.0];
+        let s = Segment::new("toss", vec![0.0, 1.0], vec![HERE; 2]).unwrap().with_wheel(wheel).unwrap();
+        let inputs = Law { trace: Some(4.0), ..law() }.inputs(&s);
+        assert_eq!(inputs.wheel, [Vector3::x() * 2.0, Vector3::y()]);
+        assert_eq!(inputs.at(0, 0.25), (Vector3::new(1.5, 0.25, 0.0), Vector3::zeros()));
+        assert_eq!(inputs.at(1, 0.5), (Vector3::y(), Vector3::zeros()));
+        assert_eq!(inputs.at(2, 0.5), (Vector3::zeros(), Vector3::zeros()));
+        let pushed = Inputs { torque: inputs.wheel.clone(), ..none() };
+        assert_eq!(pushed.at(0, 0.75), (Vector3::zeros(), Vector3::new(0.5, 0.75, 0.0)));
+        assert!(law().inputs(&s).wheel.is_empty());
+    }
+
+    /// A ball gains the mean of the torques at both ends times the time between them, in however many steps.
+    #[test]
+    fn a_ball_gains_the_integral_of_the_torque() {
+        let law = free(Matrix3::identity() / 3.0);
+        let torque = vec![Vector3::x(), HERE, HERE * -3.0];
+        let inputs = Inputs { torque: torque.clone(), ..none() };
+        let (mut p, mut s) = (HERE, Matrix3::identity());
+        law.advance(&mut p, &mut s, 2.5, &inputs, 1);
+        assert!((p - HERE - (torque[1] + torque[2]) * 1.25).amax() < 1e-12, "{p}");
+    }
+
+    /// The derivative by the start that goes with the motion is that of differences of motions.
+    #[test]
+    fn the_derivative_by_the_start_goes_with_the_motion() {
+        let law = law();
+        let ramp = |from: f64| vec![Vector3::new(from, 0.1, -0.2), Vector3::new(0.3, -from, 0.1)];
+        let inputs = Inputs { wheel: ramp(0.1), torque: ramp(0.02) };
+        let start = law.j * HERE + inputs.wheel[0];
+        let end = |start: Vector3<f64>| {
+            let (mut p, mut s) = (start, Matrix3::identity());
+            law.advance(&mut p, &mut s, 0.73, &inputs, 0);
+            (p, s)
+        };
+        let h = 1e-5;
+        for k in 0..3 {
+            let by = Vector3::ith(k, h);
+            let difference = (end(start + by).0 - end(start - by).0) / (2.0 * h);
+            assert!((difference - end(start).1.column(k)).amax() < 1e-7, "{k}");
+        }
+    }
+
+    /// A wheel along the rate of a ball takes its momentum from it, three times as much as a rate; the derivative by the start turns about the
+    /// wheel, so that each sample that is used counts as one in each direction.
+    #[test]
+    fn a_ball_gives_its_momentum_to_the_wheel() {
+        let law = free(Matrix3::identity() / 3.0);
+        let times = [0.0, 0.4, 1.0, 1.3];
+        let shares = [0.1, 0.3, -0.2, 0.4];
+        let inputs = Inputs { wheel: shares.map(|share| HERE * share).to_vec(), ..none() };
+        let measured = vec![HERE; 4];
+        let used = [true, true, false, true];
+        let (rates, normal, gradient, sum) = law.shoot(&times, &measured, &used, &inputs, HERE);
+        let mut squares = 0.0;
+        for ((rate, share), used) in rates.iter().zip(shares).zip(used) {
+            let lost = 3.0 * (share - 0.1);
+            assert!((rate - HERE * (1.0 - lost)).amax() < 1e-12, "{share}: {rate}");
+            squares += if used { lost * lost * HERE.norm_squared() } else { 0.0 };
+        }
+        assert!((sum / squares - 1.0).abs() < 1e-10, "{sum} {squares}");
+        assert!((normal.trace() / 9.0 - 1.0).abs() < 1e-5, "{normal}");
+        // along the wheel nothing turns: the sum of what is left, 0.6 + 0.9 of the rate
+        assert!((gradient.dot(&HERE) / (1.5 * HERE.norm_squared()) - 1.0).abs() < 1e-10, "{gradient}");
+    }
+
+    /// The nearest motion to exact rates is that motion, also where one sample that is not used stands far out of it.
+    #[test]
+    fn the_nearest_motion_is_the_one_that_was_read() {
+        let j = law().j;
+        let times: Vec<f64> = (0..300).map(|k| 0.07 * f64::from(k)).collect();
+        let body = Inertia::from_tensor(j).unwrap();
+        let exact = simulate(&body, HERE, &times, 0.0, &mut Random::new(1)).unwrap();
+        let mut read = exact.clone();
+        read[0] = Vector3::new(5.0, 5.0, 5.0);
+        read[100] = Vector3::new(-40.0, 0.0, 9.0);
+        let used: Vec<bool> = (0..300).map(|k| k != 0 && k != 100).collect();
+        let s = Segment::new("toss", times, read.clone()).unwrap();
+        let found = free(j).nearest(&s, &read, &used).unwrap();
+        // steps of up to 0.05 rad have errors of order 1e-7 a radian
+        let apart = found.iter().zip(&exact).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+        assert!(apart < 1e-4, "{apart:e}");
+        assert!(free(j).nearest(&s, &read, &[false; 300]).is_none());
+    }
+
+    /// What is left of samples that are used is measured less fitted, 3 and 4 rad/s in two of three samples: the root of 25/6.
+    #[test]
+    fn residuals_are_those_of_the_samples_that_are_used() {
+        let measured = vec![HERE + Vector3::x() * 3.0, HERE * 9.0, HERE - Vector3::y() * 4.0];
+        let (used, fitted) = (vec![true, false, true], Some(vec![HERE; 3]));
+        let motion = FittedMotion { segment: 0, used, measured, fitted };
+        let left = motion.residuals().unwrap();
+        assert!((left[0] - Vector3::x() * 3.0).amax() < 1e-14);
+        assert!((left[2] + Vector3::y() * 4.0).amax() < 1e-14);
+        assert_eq!(left[1], Vector3::zeros());
+        assert!((motion.rms().unwrap() - (25.0_f64 / 6.0).sqrt()).abs() < 1e-14);
+        assert!(FittedMotion { fitted: None, ..motion }.rms().is_none());
+    }
+}

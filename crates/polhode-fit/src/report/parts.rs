@@ -182,4 +182,14 @@ mod tests {
             assert!((quantile(dof, z) / exact - 1.0).abs() < 0.04, "{}", quantile(dof, z));
         }
     }
+
+    /// The cubes of Wilson and Hilferty: with two degrees of freedom the variance is 1/9, with eight 1/36.
+    #[test]
+    fn quantiles_are_cubes_of_normal_numbers() {
+        let thirds = [(2.0, 0.0, 2.0 * 512.0 / 729.0), (2.0, 1.0, 2.0 * 1331.0 / 729.0)];
+        let sixths = [(8.0, 1.0, 8.0 * 68_921.0 / 46_656.0), (8.0, -1.0, 8.0 * 24_389.0 / 46_656.0)];
+        for (dof, z, exact) in thirds.into_iter().chain(sixths) {
+            assert!((quantile(dof, z) / exact - 1.0).abs() < 1e-14, "{dof} {z}: {}", quantile(dof, z));
+        }
+    }
 }
