@@ -5,30 +5,39 @@ use std::sync::OnceLock;
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
-use polhode::record::Record;
+use polhode::record::{Record, Segment};
 
 use crate::error::FitError;
-use crate::estimator::{fit, fitted};
+use crate::estimator::{Fitted, fit, fitted};
 use crate::models::equations::Equations;
+use crate::models::reading_error::ReadingError;
 use crate::physical::constraint::{ActiveConstraint, Constraint};
-use crate::physical::coordinates::{Coordinates, Form, coordinates, eigen, tensor};
+use crate::physical::coordinates::{Coordinates, Form, basis, coordinates, eigen, tensor};
 use crate::report::answer::{Answer, ratios_of, sigmas};
 use crate::report::attitudes::AttitudeFit;
 use crate::report::estimate::{Estimate, Method, Residuals};
+use crate::report::exact::identify;
 use crate::report::identifiability::{Identifiability, Undetermined};
 use crate::report::next_step::{Contradiction, NextStep, Origin};
 use crate::report::nuisance::Systematic;
-use crate::report::parts::{Halves, Scatter, instead};
+use crate::report::parts::{Halves, Scatter, instead, rows_between};
+use crate::report::sensor::{Refuted, Suspect};
 use crate::report::torque_free::{InvariantTrend, Memory, Whiteness, memory, trends};
 use crate::report::warning::Warning;
-use crate::report::warnings::{Doubts, of_answer, of_likelihood, of_smoothed};
+use crate::report::warnings::{
+    Doubts, Grounds, has_zero_inputs, of_answer, of_likelihood, of_record, of_smoothed, short_segments,
+    warnings,
+};
 use crate::settings::Settings;
 use crate::settings::torque::{TorqueModel, TorqueNoise};
 use crate::signal::normalised::{Normalised, normalised};
 use crate::signal::stretch::Stretch;
 use crate::simulate::{Disturbances, Gyroscope, simulate_with};
+use crate::solve::weak_estimate::WeakEstimate;
 use crate::thresholds::poses::DOUBTFUL;
-use crate::thresholds::warnings::{APART, FAR, FEW, UNCERTAIN};
+use crate::thresholds::warnings::{APART, AS_WELL, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, UNEXPLAINED};
+use crate::units::Others;
+use crate::units::product::UnitProduct;
 use crate::verdict::driven::check_driven;
 
 fn body() -> Matrix3<f64> {
@@ -190,13 +199,14 @@ fn deviations_of_the_answer_are_those_of_differences() {
     assert!((axes * Vector3::x() - v[0]).norm() < 1e-14);
 }
 
+fn clean_record() -> Record {
+    let (times, rates) = rates(&Disturbances::default(), 1e-3, 1200, &mut Random::new(5));
+    Record::from_samples(&times, &rates).unwrap()
+}
+
 fn clean() -> Estimate {
     static CLEAN: OnceLock<Estimate> = OnceLock::new();
-    let fitted = || {
-        let (times, rates) = rates(&Disturbances::default(), 1e-3, 1200, &mut Random::new(5));
-        fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap()
-    };
-    CLEAN.get_or_init(fitted).clone()
+    CLEAN.get_or_init(|| fit(&clean_record(), &Settings::default()).unwrap()).clone()
 }
 
 /// Each number of an answer is warned of just beyond its threshold, by its value, and not before it.
@@ -508,4 +518,235 @@ fn warnings_count_in_words_that_agree() {
     let left = |times: f64| Warning::Residuals { times, noise: 0.01 }.to_string();
     assert!(left(9999.0).starts_with("the residuals are 9999.0 times what the noise of 1.00e-2 rad/s"));
     assert!(left(1e4).starts_with("the residuals are 1.0e4 times what the noise of 1.00e-2 rad/s"));
+}
+
+/// Nothing that speaks against the fit of a free body.
+fn no_grounds<'a>(record: &'a Record, weak: &'a WeakEstimate, e: &Estimate) -> Grounds<'a> {
+    let noise = e.noise_sigma / e.rms_rate;
+    Grounds {
+        record,
+        weak,
+        misfit: e.chi2_per_dof,
+        variance: noise * noise,
+        open: None,
+        contradicted: None,
+        suspect: None,
+        refuted: None,
+        as_well: None,
+        instead: None,
+        left: None,
+        scatter: None,
+        differing: None,
+        found: true,
+        noise_found: true,
+        driven: false,
+        size: None,
+    }
+}
+
+/// What speaks against a fit is warned of with its numbers, each by itself, just beyond its threshold and not before it.
+#[test]
+fn grounds_are_warned_of_beyond_their_thresholds() {
+    let record = clean_record();
+    let Fitted { estimate: clean, drawn } = fitted(&record, &Settings::default()).unwrap();
+    let weak = drawn.unwrap().weak;
+    let quiet = || no_grounds(&record, &weak, &clean);
+    let of = |grounds: Grounds<'_>| warnings(&clean, &grounds);
+    assert!(of(quiet()).is_empty(), "{:?}", of(quiet()));
+
+    let residuals = |dof: usize, misfit: f64| {
+        let e = Estimate { dof, ..clean.clone() };
+        warnings(&e, &Grounds { misfit, ..quiet() })
+    };
+    // 1 + 5 √(2/5000) = 1.1 is less, and 1 + 5 √(2/200) = 1.5 more
+    for (dof, most) in [(5000, RESIDUALS), (200, 1.5)] {
+        assert!(residuals(dof, most - 0.01).is_empty());
+        let times = f64::sqrt(most + 0.01);
+        assert_eq!(residuals(dof, most + 0.01), [Warning::Residuals { times, noise: clean.noise_sigma }]);
+    }
+    // 1 + 10 √(2/5000) = 1.2
+    let left = |left: f64| of(Grounds { left: Some((left, 5000.0)), ..quiet() });
+    assert!(left(1.19).is_empty());
+    assert_eq!(left(1.21), [Warning::Vibration { times: 1.21_f64.sqrt(), noise: clean.noise_sigma }]);
+
+    let scatter = Scatter { parts: 8, chi2: 140.0, dof: 35 };
+    assert_eq!(of(Grounds { scatter: Some(scatter), ..quiet() }), [Warning::Scatter(scatter)]);
+    let stated = Warning::StatedNoise { stated: 0.06, shown: 1e-3 };
+    assert_eq!(of(Grounds { contradicted: Some((0.06, 1e-3)), ..quiet() }), [stated]);
+    let products = vec![UnitProduct::numbered(0.01)];
+    let others = Others { products: products.clone(), as_read: 0.2, best: 0.1 };
+    let expected = Warning::Units { products, unexplained: 0.2, other: 0.1 };
+    assert_eq!(of(Grounds { open: Some(&others), ..quiet() }), [expected]);
+
+    // an error that its prior does not allow is named unless what is left out surely explains more
+    let (what, origin, unit) = ("a magnet", Origin::Body, "rad/s^2");
+    let suspect = Suspect { what, origin, size: 2.0, unit, gain: 53.0, reached: None };
+    let left_out = Warning::LeftOut { what, size: 2.0, unit, gain: 53.0, origin };
+    let refuted = |gain: f64, suspect: Option<&Suspect>| {
+        let own = Refuted { what: "offsets", size: 0.05, prior: 1e-3, unit: "rad/s", gain };
+        of(Grounds { suspect, refuted: Some(own), ..quiet() })
+    };
+    let named =
+        |gain: f64| Warning::RefutedPrior { what: "offsets", size: 0.05, prior: 1e-3, unit: "rad/s", gain };
+    let most = 53.0 - AS_WELL;
+    assert_eq!(refuted(most + 0.1, Some(&suspect)), [named(most + 0.1), left_out.clone()]);
+    assert_eq!(refuted(most - 0.1, Some(&suspect)), [left_out]);
+    assert_eq!(refuted(1.0, None), [named(1.0)]);
+
+    let mut e = clean.clone();
+    e.whiteness = Whiteness { correlation: -0.3, sigma: 0.01 };
+    assert_eq!(warnings(&e, &quiet()), [Warning::Correlated(e.whiteness)]);
+
+    let weak = WeakEstimate { moved: 0.3, ..weak };
+    let found = warnings(&clean, &no_grounds(&record, &weak, &clean));
+    assert_eq!(found, [Warning::NotConverged { moved: 0.3 }]);
+}
+
+/// Trends count without a torque and wheels, what stands in the place of a torque beside one that was found, torque noise where free motion
+/// leaves a hundredth, and a noisy segment beside two others.
+#[test]
+fn torques_are_warned_of_where_they_are_part_of_the_fit() {
+    let record = clean_record();
+    let Fitted { estimate: clean, drawn } = fitted(&record, &Settings::default()).unwrap();
+    let weak = drawn.unwrap().weak;
+    let quiet = || no_grounds(&record, &weak, &clean);
+    let trend = InvariantTrend { rate: -0.06, sigma: 0.01 };
+    let mut e = clean.clone();
+    (e.momentum_trend, e.energy_trend) = (Some(trend), Some(trend));
+    assert_eq!(warnings(&e, &quiet()), [Warning::MomentumTrend(trend), Warning::EnergyTrend(trend)]);
+    let driven = |e: &Estimate, size| warnings(e, &Grounds { driven: true, size, ..quiet() });
+    assert!(driven(&e, None).is_empty());
+    assert_eq!(driven(&e, Some(2.0)), [Warning::NoScale { size: 2.0 }]);
+    let sized = Estimate { inertia: Some(Inertia::from_tensor(body()).unwrap()), ..e.clone() };
+    assert!(driven(&sized, Some(2.0)).is_empty());
+
+    let parts = Halves { share: 0.25, first: [0.1, 0.4, 0.5], second: [0.2, 0.3, 0.5], chi2: 44.0 };
+    let (error, size) = (ReadingError::Delays, 1e-3);
+    let beside = |found: bool| {
+        Grounds { found, as_well: Some((error, size, -1.0)), instead: Some((parts, -2.0)), ..quiet() }
+    };
+    assert!(warnings(&clean, &beside(true)).is_empty());
+    e.torque.model = TorqueModel::Drag;
+    let torque = Warning::Torque(e.torque.clone());
+    let two = Warning::TwoTensors { parts, gain: -2.0 };
+    assert_eq!(warnings(&e, &beside(true)), [torque, Warning::AsWell { error, size, gain: -1.0 }, two]);
+    assert!(warnings(&e, &beside(false)).is_empty());
+
+    let noisy = |unexplained: Option<f64>, noise_found: bool| {
+        let mut e = Estimate { unexplained, ..clean.clone() };
+        e.per_segment[0].torque_noise = 2e-4;
+        warnings(&e, &Grounds { noise_found, ..quiet() })
+    };
+    for unexplained in [None, Some(1.01 * UNEXPLAINED)] {
+        assert_eq!(noisy(unexplained, true), [Warning::TorqueNoise { density: 2e-4, unexplained }]);
+        assert!(noisy(unexplained, false).is_empty());
+    }
+    assert!(noisy(Some(0.99 * UNEXPLAINED), true).is_empty());
+
+    let segments = |levels: &[f64]| {
+        let mut e = clean.clone();
+        let own = |mean_square| Residuals { segment: 0, times: Vec::new(), values: Vec::new(), mean_square };
+        e.residuals.extend(levels.iter().copied().map(own));
+        e.residuals[0].mean_square = 1.0;
+        warnings(&e, &quiet())
+    };
+    let times = f64::sqrt(1.01 * NOISY);
+    let noisy = Warning::NoisySegment { segment: 0, start: 0.0, times };
+    assert_eq!(segments(&[1.01 * NOISY, 1.0]), [noisy]);
+    assert!(segments(&[0.99 * NOISY, 1.0]).is_empty() && segments(&[9.0 * NOISY]).is_empty());
+
+    // residuals that change their sign from one to the next remember as many as lie within one turn
+    let mut e = clean.clone();
+    let values = &mut e.residuals[0].values;
+    values.iter_mut().enumerate().for_each(|(k, v)| *v = [if k % 2 == 0 { 1.0 } else { -1.0 }, 0.0, 0.0]);
+    let (count, centres) = (e.residuals[0].times.len(), &e.residuals[0].times);
+    let turn = (centres[count - 1] - centres[0]) / (count - 1) as f64 * clean.rms_rate;
+    let lags = ((core::f64::consts::TAU / turn) as usize).min(count / 4);
+    let found = warnings(&e, &quiet());
+    let [Warning::Memory(Memory { dof, .. })] = found[..] else { panic!("{found:?}") };
+    assert!(dof == 9 * lags && lags > 2, "{dof} {lags}");
+}
+
+/// Momenta and torques that are told are zero where all of them are; a record without any has none that are.
+#[test]
+fn inputs_that_are_zero_are_told_from_none() {
+    let of = |wheel: Option<f64>, torque: Option<f64>| {
+        let mut segment = Segment::new("toss", vec![0.0, 1.0], vec![Vector3::x(); 2]).unwrap();
+        let list = |size: f64| vec![Vector3::zeros(), Vector3::z() * size];
+        if let Some(size) = wheel {
+            segment = segment.with_wheel(list(size)).unwrap();
+        }
+        if let Some(size) = torque {
+            segment = segment.with_torque(list(size)).unwrap();
+        }
+        let mut record = Record::default();
+        record.segments.push(segment);
+        has_zero_inputs(&record)
+    };
+    assert!(!of(None, None) && of(Some(0.0), None) && of(None, Some(0.0)) && of(Some(0.0), Some(0.0)));
+    assert!(!of(Some(1.0), None) && !of(Some(0.0), Some(-1.0)) && !of(Some(1.0), Some(0.0)));
+}
+
+/// What was left out of a record is counted, each kind by itself, and segments that were not used.
+#[test]
+fn what_was_left_out_of_a_record_is_counted() {
+    let of = |time: fn(u32) -> f64, reading: fn(u32) -> u32| {
+        let times: Vec<f64> = (0..400).map(time).collect();
+        let rates = (0..400).map(|i| Vector3::new(f64::from(reading(i) * reading(i)), 1.0, 0.0));
+        Record::from_samples(&times, &rates.collect::<Vec<_>>()).unwrap()
+    };
+    let plain = of(|i| f64::from(i) / 100.0, |i| i);
+    assert!(of_record(&plain, &[], 1).is_empty());
+    assert_eq!(of_record(&plain, &[], 0), [Warning::ShortSegments { short: 1, segments: 1 }]);
+    let merged = of(|i| f64::from(i / 2) / 100.0, |i| i);
+    assert_eq!(of_record(&merged, &[], 1), [Warning::Merged { samples: 200 }]);
+    let repeated = of(|i| f64::from(i) / 400.0, |i| i / 4);
+    let found = of_record(&repeated, &[], 1);
+    let [Warning::Repeated { samples: 300, rate }] = found[..] else { panic!("{found:?}") };
+    assert!((rate - 100.0).abs() < 1e-9, "{rate}");
+    let stale = of(|i| f64::from(i) / 100.0, |i| if (200..209).contains(&i) { 200 } else { i });
+    assert_eq!(of_record(&stale, &[], 1), [Warning::Stale { samples: 8 }]);
+    assert_eq!((short_segments(2, 2), short_segments(3, 2)), (None, None));
+    assert_eq!(short_segments(1, 3), Some(Warning::ShortSegments { short: 2, segments: 3 }));
+}
+
+/// Ascending eigenvalues of the information become descending singular values; one below 1e-12 of the largest is rounding, and leaves its
+/// number open.
+#[test]
+fn information_that_is_rounding_leaves_a_number_open() {
+    let s = [Stretch::new(vec![0.0, 1.0], vec![Vector3::new(0.3, -0.8, 0.5); 2])];
+    let of = |least: f64| {
+        let information = Form::from_diagonal(&Coordinates::new(1e8, least, 1e6, 4e6, 1e4));
+        identify(&s, &coordinates(&body()), &information)
+    };
+    let known = of(1.1e-4);
+    let expected = [1e-4, 5e-4, 1e-3, 1e-2, 1.0 / 1.1e-4_f64.sqrt()];
+    for (found, expected) in known.deviations.into_iter().zip(expected) {
+        assert!((found / expected - 1.0).abs() < 1e-3, "{found:e} {expected:e}");
+    }
+    let open = of(0.9e-4);
+    assert!(open.deviations[4].is_infinite() && (open.rank, known.rank) == (4, 4), "{:?}", open.deviations);
+    assert!((open.null_tensors[0].dot(&basis(1)).abs() - 1.0).abs() < 1e-6, "{:?}", open.null_tensors);
+}
+
+/// Parts of a record are cut at whole equations, three for a test function, one part after the other without a gap.
+#[test]
+fn parts_of_a_record_are_all_of_its_equations() {
+    let (times, read) = rates(&Disturbances::default(), 1e-3, 500, &mut Random::new(5));
+    let head = |count: usize| Record::from_samples(&times[..count], &read[..count]).unwrap();
+    let settings = Settings::default().with_torque(TorqueModel::None).with_radius(1.0);
+    let settings = settings.with_torque_noise(TorqueNoise::None).with_check_units(false);
+    let weak = fitted(&head(500).join(head(300)), &settings).unwrap().drawn.unwrap().weak;
+    assert_eq!((weak.parts.len(), weak.columns.len()), (2, 0));
+    let all: Vec<f64> = weak.parts.iter().flat_map(|part| part.rows.iter().copied()).collect();
+    // six numbers in a row
+    let (width, mut joined) = (3 * 6, Vec::new());
+    let before = |k: usize| k * (all.len() / width) / 8;
+    for k in 0..8 {
+        let own = rows_between(&weak, [k, k + 1].map(|k| k as f64 / 8.0)).concat();
+        assert_eq!(own.len(), width * (before(k + 1) - before(k)), "{k}");
+        joined.extend(own);
+    }
+    assert!(joined == all);
+    assert!(rows_between(&weak, [0.5, 0.5]).concat().is_empty());
 }
