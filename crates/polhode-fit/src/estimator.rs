@@ -396,3 +396,112 @@ fn too_short(record: &Record, settings: &Settings, stretches: &[Stretch], rms: f
         },
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::columns::column::Unknowns;
+    use crate::columns::drag::Drag;
+    use crate::physical::coordinates::Coordinates;
+    use crate::report::next_step::Origin;
+
+    const UNIT: f64 = 2.0;
+
+    /// Rates that change evenly, so that their differences show no noise and no reading comes twice, in steps of 0.1 s.
+    fn even() -> (Record, Vec<Stretch>) {
+        let times: Vec<f64> = (0..41).map(|k| 0.1 * f64::from(k)).collect();
+        let rates = (0..41).map(f64::from).map(|k| Vector3::new(1.0 + 0.01 * k, 2.0 - 0.02 * k, 0.03 * k));
+        let rates: Vec<Vector3<f64>> = rates.collect();
+        let record = Record::from_samples(&times, &rates).unwrap();
+        let (times, rates) = (times.iter().map(|t| t * UNIT), rates.iter().map(|w| w / UNIT));
+        (record, vec![Stretch::new(times.collect(), rates.collect())])
+    }
+
+    /// A noise of 0.2 rad/s in units of 2 rad/s has the variance 0.01, and rounding to steps of 0.6 rad/s adds 0.36/12/4; without a noise the
+    /// larger of both counts. Noise that is less than the quadrature has that of the quadrature, and a twelfth of the mean square is too much.
+    #[test]
+    fn the_variance_is_that_of_noise_and_rounding() {
+        let (record, stretches) = even();
+        let of = |settings: &Settings| read_variance(settings, &record, &stretches, UNIT);
+        let (plain, stepped) = (Settings::default(), Settings::default().with_quantum(0.6));
+        let near = |settings: &Settings, expected: f64| {
+            let found = of(settings).unwrap();
+            assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+        };
+        near(&plain, LEAST);
+        near(&stepped, 0.0075);
+        near(&plain.clone().with_noise(0.2), 0.01);
+        near(&stepped.clone().with_noise(0.2), 0.0175);
+        near(&plain.clone().with_noise(1e-11), LEAST);
+        let most = UNIT * (MOST / 3.0).sqrt();
+        assert!(of(&plain.clone().with_noise(most * (1.0 - 1e-9))).is_ok());
+        let too_much = most * (1.0 + 1e-9);
+        match of(&plain.clone().with_noise(too_much)) {
+            Err(FitError::NoRotation { rms, noise }) => {
+                assert!(rms == UNIT && (noise / too_much - 1.0).abs() < 1e-12, "{rms} {noise}");
+            }
+            found => panic!("{found:?}"),
+        }
+        for value in [1e-170, 1e170] {
+            let found = of(&plain.clone().with_noise(value));
+            assert_eq!(found, Err(FitError::Setting { name: "the noise", value }));
+        }
+    }
+
+    /// A density in (rad/s²)² s is one over the cube of the unit rate, and is told over the variance of the noise.
+    #[test]
+    fn torque_noise_is_told_in_the_units_of_the_fit() {
+        let of = |torque_noise| noise_of(&Settings::default().with_torque_noise(torque_noise), UNIT, 0.01);
+        assert_eq!((of(TorqueNoise::None), of(TorqueNoise::Fitted)), (Noise::White, Noise::Fitted));
+        let Noise::Given(level) = of(TorqueNoise::Given(0.4)) else { panic!() };
+        assert!((level / 5.0 - 1.0).abs() < 1e-14, "{level}");
+    }
+
+    /// Why there is no estimate: of a radius that was asked for how long the longest stretch is in seconds, else how many samples there are.
+    #[test]
+    fn a_record_that_is_too_short_is_told_by_what_was_asked() {
+        let (record, stretches) = even();
+        let plain = Settings::default();
+        let given = plain.clone().with_radius(5.0);
+        let of = |failure, settings| without_estimate(failure, &record, settings, &stretches, UNIT);
+        let FitError::Radius { radius, longest, needed } = of(Failure::TooShort, &given) else { panic!() };
+        assert!((radius, needed) == (5.0, 8) && (longest - 4.0).abs() < 1e-12, "{longest}");
+        let few =
+            FitError::TooFewSamples { samples: 41, segments: 1, longest: 41, saturated: 0, needed: 16 };
+        assert_eq!(of(Failure::TooShort, &plain), few);
+        let singular = FitError::Solver(SolverFailure::Covariance);
+        assert_eq!(of(Failure::Dense, &given), FitError::Dense { radius: 5.0 });
+        assert_eq!(of(Failure::Dense, &plain), singular);
+        assert_eq!(of(Failure::Singular, &given), singular);
+        assert_eq!(of(Failure::Singular, &plain), singular);
+    }
+
+    /// The displacements beside the noise have the squares of their sum: what the choice spreads the tensor by, and the way to what would
+    /// explain the record better.
+    #[test]
+    fn what_stands_beside_the_noise_adds_its_squares() {
+        let weak = WeakEstimate {
+            radius: 1.0,
+            columns: vec![Column::new(Drag, None)],
+            at: Unknowns { x: Coordinates::repeat(0.25), c: vec![0.5] },
+            moved: 0.0,
+            root: Form::identity(),
+            stacked: None,
+            doubt: Form::zeros(),
+            squares: 0.0,
+            rows: 20,
+            parts: Vec::new(),
+        };
+        assert_eq!(beside(&weak, &Form::zeros(), None, None).shape(), (6, 0));
+        let reached = Some(Unknowns { x: Coordinates::repeat(0.375), c: vec![0.75] });
+        let (what, origin) = ("an error of hx", Origin::Wheels);
+        let suspect = Suspect { what, origin, size: 0.1, unit: "of it", gain: 90.0, reached };
+        let spread = Form::from_fn(|i, k| if i == k { 4.0 } else { 1.0 });
+        let found = beside(&weak, &spread, Some(&suspect), None);
+        let step = DVector::from_fn(6, |k, _| if k == 0 { 0.25 } else { 0.125 });
+        let mut expected = &step * step.transpose();
+        let mut of_tensor = expected.view_mut((1, 1), (5, 5));
+        of_tensor += spread;
+        assert!((&found * found.transpose() - expected).amax() < 1e-12);
+    }
+}
