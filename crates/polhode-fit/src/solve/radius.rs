@@ -386,4 +386,64 @@ mod tests {
         let (best, longer) = (radius(1.0), radius(SPARED));
         assert!(longer >= best && radius(1e3) > longer, "{best} {longer}");
     }
+
+    /// So many samples, from 0 to a time.
+    fn span(until: f64, samples: usize) -> Stretch {
+        let step = until / (samples - 1) as f64;
+        Stretch::new((0..samples).map(|k| step * k as f64).collect(), vec![Vector3::x(); samples])
+    }
+
+    /// Radii double from half a radian, or from that of eight samples, as long as a stretch holds four of them and has eight samples in two;
+    /// where none has, the radius is a quarter of the stretch of the most samples.
+    #[test]
+    fn candidates_double_within_the_stretches() {
+        assert_eq!(candidates(&[span(40.0, 4001)]), [0.5, 1.0, 2.0, 4.0, 8.0]);
+        // of a long stretch with 2 rad from one sample to the next those from 7.6 rad on, of a dense one those up to a quarter of it
+        assert_eq!(candidates(&[span(2.1, 1001), span(40.0, 21)]), [0.5, 8.0]);
+        let near = |stretches: &[Stretch], expected: &[f64]| {
+            let found = candidates(stretches);
+            assert_eq!(found.len(), expected.len(), "{found:?}");
+            assert!(found.iter().zip(expected).all(|(a, b)| (a / b - 1.0).abs() < 1e-12), "{found:?}");
+        };
+        near(&[span(40.0, 101)], &[320.0 / 101.0, 640.0 / 101.0]);
+        near(&[span(1.9, 101)], &[0.475]);
+        near(&[span(1.9, 101), span(1.0, 300)], &[0.25]);
+    }
+
+    /// A number of samples goes to the longest stretches first; what has three or fewer is none, and the order of the record stays.
+    #[test]
+    fn the_longest_stretches_come_first() {
+        let all = [5, 9, 3, 7].map(|count| span((count - 1) as f64, count));
+        let counts = |samples: usize| -> Vec<usize> {
+            let found = longest(&all, samples);
+            // each begins where its stretch begins
+            assert!(found.iter().all(|own| all.iter().any(|s| s.times.starts_with(&own.times))));
+            found.iter().map(|own| own.times.len()).collect()
+        };
+        assert_eq!(counts(14), [9, 5]);
+        assert_eq!(counts(20), [4, 9, 7]);
+        assert_eq!(counts(12), [9]);
+        assert_eq!(counts(100), [5, 9, 7]);
+    }
+
+    /// Of an information of 8 with a variance of 2, of which the noise adds 1, the covariance is 4/3².
+    #[test]
+    fn noise_in_the_derivatives_widens_the_covariance() {
+        let of = |inflation: f64| covariance(&(Form::identity() * 8.0), &(Form::identity() * inflation), 2.0);
+        for (inflation, expected) in [(0.0, 0.25), (1.0, 4.0 / 9.0), (3.5, 16.0)] {
+            assert!((of(inflation).unwrap() - Form::identity() * expected).amax() < 1e-13, "{inflation}");
+        }
+        assert!(of(4.0).is_none() && of(5.0).is_none());
+    }
+
+    /// Of 101 samples 93 test functions are too many, 88 are not, and where none has eight samples there are none.
+    #[test]
+    fn equations_may_be_nine_tenths_of_the_samples() {
+        let is_dense = |radius: f64| {
+            let stretches = [span(10.0, 101), span(100.0, 9)];
+            matches!(check_radius(&stretches, radius), Err(Failure::Dense))
+        };
+        // 4 (10 − 2 r)/r + 1 of them
+        assert!(is_dense(0.4) && !is_dense(0.42) && !is_dense(0.39));
+    }
 }

@@ -478,3 +478,32 @@ impl<'a> Rounds<'a> {
         each.map(|((p, w), (s, noise))| p.inflation(w, s, noise)).sum()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physical::coordinates::coordinates;
+    use nalgebra::Matrix3;
+
+    fn moments(a: f64, b: f64, c: f64) -> Coordinates {
+        coordinates(&Matrix3::from_diagonal(&Vector3::new(a, b, c)))
+    }
+
+    /// A step is taken whole while a tenth of the smallest moment is left, and else as far as leaves that, or half of it, a quarter, and so on.
+    #[test]
+    fn a_step_leaves_a_tenth_of_the_smallest_moment() {
+        let times: Vec<f64> = (0..100).map(|k| 0.1 * f64::from(k)).collect();
+        let stretches = [Stretch::new(times, vec![Vector3::x(); 100])];
+        let at = Unknowns { x: moments(0.4, 0.1, 0.5), c: Vec::new() };
+        let rounds = Rounds::new(&stretches, 1.0, &[], at).unwrap();
+        // of the smallest moment, 0.1, so much is lost
+        let shares = [(-0.1, 1.0), (0.0899, 1.0), (0.1, 0.9), (0.2, 0.45), (0.35, 0.225), (0.4, 0.225)];
+        for (lost, share) in shares {
+            let found = rounds.room(&moments(0.5 * lost, -lost, 0.5 * lost));
+            assert!(f64::abs(found - share) < 1e-15, "{lost}: {found}");
+        }
+        // no stretch holds a test function of that size
+        let at = Unknowns { x: moments(0.4, 0.1, 0.5), c: Vec::new() };
+        assert!(Rounds::new(&stretches, 5.0, &[], at).is_none());
+    }
+}

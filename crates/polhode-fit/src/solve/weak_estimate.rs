@@ -183,3 +183,65 @@ impl WeakEstimate {
         Some((Coordinates::from_fn(|k, _| pairs[k].0), Form::from_fn(|i, k| pairs[k].1[i])))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physical::coordinates::coordinates;
+    use nalgebra::Matrix3;
+
+    /// Of moments of which the largest is this one, with an information of the square of `root` and a hundred degrees of freedom that leave
+    /// four times the noise of variance 0.25.
+    fn estimate(largest: f64, root: f64) -> WeakEstimate {
+        let j = Matrix3::from_diagonal(&Vector3::new(0.1, largest, 0.9 - largest));
+        WeakEstimate {
+            radius: 1.0,
+            columns: Vec::new(),
+            at: Unknowns { x: coordinates(&j), c: Vec::new() },
+            moved: 0.0,
+            root: Form::identity() * root,
+            stacked: None,
+            doubt: Form::zeros(),
+            squares: 100.0,
+            rows: 105,
+            parts: Vec::new(),
+        }
+    }
+
+    /// Rounds stand still up to a hundredth of a deviation, and are near up to a half.
+    #[test]
+    fn rounds_converge_by_their_last_move() {
+        for (moved, expected) in [
+            (0.0, Convergence::Still),
+            (STILL, Convergence::Still),
+            (1.01 * STILL, Convergence::Near),
+            (RESTLESS, Convergence::Near),
+            (1.01 * RESTLESS, Convergence::None),
+            (f64::INFINITY, Convergence::None),
+            (f64::NAN, Convergence::None),
+        ] {
+            let weak = WeakEstimate { moved, ..estimate(0.5, 1.0) };
+            assert_eq!(weak.convergence(), expected, "{moved}");
+            assert_eq!(weak.has_settled(), expected != Convergence::None, "{moved}");
+        }
+    }
+
+    /// A largest moment may exceed half the trace by a twentieth, or by five of its deviations, which the misfit enlarges; a moment has the
+    /// deviation √(2/3) of a coordinate.
+    #[test]
+    fn a_body_may_have_a_tensor_near_the_law() {
+        let variance = 0.25;
+        let sure = 1e6;
+        assert!(estimate(0.5 + 0.99 * BEYOND, sure).possible(variance));
+        assert!(!estimate(0.5 + 1.01 * BEYOND, sure).possible(variance));
+        assert!((estimate(0.5, sure).misfit(variance) - 4.0).abs() < 1e-14);
+        // 5 √(2/3) √(4 · 0.25)/root beyond the law
+        let root = SURE * (2.0_f64 / 3.0).sqrt() / 0.1;
+        assert!(estimate(0.6, root * 0.999).possible(variance));
+        assert!(!estimate(0.6, root * 1.001).possible(variance));
+        // residuals of less than the noise narrow nothing: five deviations are half as many
+        let quiet = |root: f64| WeakEstimate { squares: 10.0, ..estimate(0.6, root) };
+        assert!(quiet(0.4995 * root).possible(variance));
+        assert!(!quiet(0.5005 * root).possible(variance));
+    }
+}
