@@ -301,3 +301,55 @@ fn add_pairs(sum: &mut Columns<'_>, tests: &TestFunctions, time: f64, products: 
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use polhode::num::Random;
+
+    /// Likelihoods at several levels are those at each, to the last bit; the last level stands for those that are not there. They are those of the
+    /// factor.
+    #[test]
+    fn likelihoods_of_several_levels_are_those_of_each() {
+        let mut random = Random::new(7);
+        let times: Vec<f64> = (0..201).map(|k| 0.1 * f64::from(k)).collect();
+        let stretch = Stretch::new(times, (0..201).map(|_| random.normal_vector()).collect());
+        let tests = TestFunctions::new(&stretch, 1.0).unwrap();
+        let terms = Terms::at(Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45));
+        let covariance = Covariance::new(&stretch, &vec![Vector3::zeros(); 201], &terms, &tests);
+        let e: Vec<f64> = (0..3 * tests.count).map(|_| random.normal()).collect();
+        let levels = [
+            Levels::WHITE,
+            Levels { white: 1.7, torque: 0.3, shape: Shape::Moments },
+            Levels { white: 0.6, torque: 5.0, shape: Shape::Alike },
+        ];
+        let found = covariance.likelihoods(&e, &levels);
+        for (k, found) in found.into_iter().enumerate() {
+            let level = levels[k.min(2)];
+            assert_eq!(found, covariance.likelihood(&e, level), "{k}");
+            let (determinant, squares) = found.unwrap();
+            let factor = covariance.factor(level).unwrap();
+            let mut white = e.clone();
+            factor.forward(&mut white, 1);
+            let expected: f64 = white.iter().map(|w| w * w).sum();
+            assert!((squares / expected - 1.0).abs() < 1e-6, "{k}: {squares} {expected}");
+            assert!((determinant - factor.log_determinant()).abs() < 1e-9 * (1.0 + determinant.abs()), "{k}");
+        }
+        assert_eq!(covariance.likelihoods(&e, &[]), [None; REGISTER]);
+    }
+
+    /// Both shapes of torque noise are one at a sphere; a body of unequal moments turns by torques that are alike by the mean of its inverses.
+    #[test]
+    fn torque_noise_of_both_shapes_is_alike_at_a_sphere() {
+        let sphere = Matrix3::identity() / 3.0;
+        let [one, other] = [Shape::Moments, Shape::Alike].map(|shape| torque_shape(shape, &sphere));
+        assert!((one - other).amax() < 1e-16);
+        assert!((acceleration_density(Shape::Alike, &sphere) - 1.0).abs() < 1e-14);
+        let j = Matrix3::from_diagonal(&Vector3::new(0.25, 0.25, 0.5));
+        // (16 + 16 + 4)/27
+        assert!((acceleration_density(Shape::Alike, &j) - 4.0 / 3.0).abs() < 1e-14);
+        assert_eq!(acceleration_density(Shape::Moments, &j), 1.0);
+        assert_eq!(torque_shape(Shape::Moments, &j).diagonal(), Vector3::new(0.0625, 0.0625, 0.25));
+        assert_eq!(acceleration_density(Shape::Alike, &Matrix3::zeros()), 0.0);
+    }
+}

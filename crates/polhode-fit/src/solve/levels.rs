@@ -204,6 +204,11 @@ fn lowest([below, least, above]: [f64; 3], middle: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::signal::stretch::Stretch;
+    use crate::signal::terms::Terms;
+    use crate::signal::test_functions::TestFunctions;
+    use nalgebra::{Matrix3, Vector3};
+    use polhode::num::Random;
 
     /// Each step leaves the golden share of the interval, and the answer is its middle.
     #[test]
@@ -228,5 +233,70 @@ mod tests {
         // where there is none, down the slope or not at all
         assert!(newton(|x| -x * x, 1.0) > 1.0);
         assert_eq!(vertex(|x| -x * x, 1.0), 1.0);
+    }
+
+    /// Of 113 test functions, four to a radian.
+    fn covariance() -> Covariance {
+        let times: Vec<f64> = (0..301).map(|k| 0.1 * f64::from(k)).collect();
+        let stretch = Stretch::new(times, vec![Vector3::new(0.6, -0.5, 0.62); 301]);
+        let tests = TestFunctions::new(&stretch, 1.0).unwrap();
+        let terms = Terms::at(Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45)));
+        Covariance::new(&stretch, &vec![Vector3::zeros(); 301], &terms, &tests)
+    }
+
+    /// Twice the negative log-likelihood at a level: of n residuals whose squares are s over the noise it is log |C| + s, and with free noise of the
+    /// rates, which n readings tell as well, 2 n log w + (s + n)/w at its least. Without squares it is as low as it can be.
+    #[test]
+    fn the_cost_is_least_at_its_own_noise() {
+        let (part, e) = (covariance(), vec![0.0; 339]);
+        let of = |white: bool, squares: f64| {
+            let search = Search { part: &part, e: &e, variance: 0.25, free: 0.5, white, shape: Shape::Alike };
+            search.found(3.0, (7.0, squares))
+        };
+        let fixed = of(false, 10.0);
+        assert_eq!(fixed.levels, Levels { white: 1.0, torque: 3.0, shape: Shape::Alike });
+        assert!((fixed.cost - 87.0).abs() < 1e-12 && fixed.floor == 7.0, "{} {}", fixed.cost, fixed.floor);
+        let free = of(true, 10.0);
+        let white = 419.0 / 678.0;
+        assert!((free.levels.white - white).abs() < 1e-14 && free.levels.shape == Shape::Alike);
+        assert!((free.levels.torque - 3.0 * white).abs() < 1e-14);
+        let cost = |white: f64| 7.0 + 678.0 * libm::log(white) + 419.0 / white;
+        assert!((free.cost - cost(white)).abs() < 1e-10, "{} {}", free.cost, cost(white));
+        assert!(cost(white) < cost(1.01 * white) && cost(white) < cost(0.99 * white));
+        for white in [false, true] {
+            let least = of(white, 0.0);
+            assert!((least.cost - least.floor).abs() < 1e-10, "{white}: {} {}", least.cost, least.floor);
+        }
+        assert!((free.floor - cost(0.5) + 160.0).abs() < 1e-10, "{}", free.floor);
+    }
+
+    /// Residuals of a known torque noise tell its level to their scatter; no level of half or twice the size is likelier, and a step from there
+    /// stays there. Residuals of zero tell of none.
+    #[test]
+    fn the_likeliest_torque_noise_is_that_of_the_residuals() {
+        let (part, variance) = (covariance(), 0.04);
+        let mut random = Random::new(23);
+        let size = 339;
+        let choice = Choice { white: false };
+        for shape in [Shape::Moments, Shape::Alike] {
+            let search = |e| Search { part: &part, e, variance, free: 1.0, white: false, shape };
+            let unit = search(&[]).unit();
+            let levels = Levels { white: 1.0, torque: 10.0 * unit, shape };
+            let factor = part.factor(levels).unwrap();
+            let z: Vec<f64> = (0..size).map(|_| 0.2 * random.normal()).collect();
+            let e = (0..size).map(|i| (0..=i).map(|k| factor.get(i, k) * z[k]).sum::<f64>());
+            let e: Vec<f64> = e.collect();
+            let found = likeliest(&part, &e, variance, 1.0, choice, None).unwrap();
+            let ratio = found.torque / levels.torque;
+            assert!(found.white == 1.0 && (1.0 / 3.0..3.0).contains(&ratio), "{shape:?}: {ratio}");
+            let cost = |torque: f64| Search { shape: found.shape, ..search(&e) }.at(torque).unwrap().cost;
+            let least = cost(found.torque);
+            assert!(least < cost(2.0 * found.torque) && least < cost(0.5 * found.torque), "{shape:?}");
+            let next = likeliest(&part, &e, variance, 1.0, choice, Some(found)).unwrap();
+            assert_eq!(next.shape, found.shape);
+            assert!(libm::log10(next.torque / found.torque).abs() < 0.1, "{shape:?}: {found:?} {next:?}");
+        }
+        let none = likeliest(&part, &vec![0.0; size], variance, 1.0, choice, None);
+        assert_eq!(none, Some(Levels::WHITE));
     }
 }
