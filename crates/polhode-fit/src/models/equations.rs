@@ -191,3 +191,144 @@ fn triangle(rows: &[&[f64]], width: usize) -> Vec<f64> {
     let r = triangle.finished();
     (0..width).flat_map(|i| (0..width).map(move |k| (i, k))).map(|at| r[at]).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::columns::constant::Constant;
+    use crate::columns::drag::Drag;
+    use crate::columns::offset::Offset;
+    use crate::columns::scale::Scale;
+    use crate::physical::coordinates::Coordinates;
+    use nalgebra::{DMatrix, DVector};
+    use polhode::num::Random;
+
+    const DEVIATION: f64 = 0.7;
+
+    /// Of three segments with an error of the sensor, two torques, and a scale that every model has.
+    fn example() -> Equations {
+        let mut random = Random::new(11);
+        let columns = vec![
+            Column::new(Offset(0), None),
+            Column::new(Drag, None),
+            Column::new(Constant(0), None),
+            Column::new(Scale, Some(0.2)),
+        ];
+        let origin =
+            Unknowns { x: Coordinates::from_fn(|_, _| 0.1 * random.normal()), c: vec![0.3, -0.2, 0.5, 0.1] };
+        let segments = [12, 15, 9].map(|rows| Segment {
+            equations: 10 * rows,
+            rows: (0..10 * rows).map(|_| random.normal()).collect(),
+        });
+        Equations { columns, errors: 1, torques: 2, origin, segments: segments.into(), deviation: DEVIATION }
+    }
+
+    /// A model has the columns of its torque and those of every model; what it has not is zero, and its part is taken off the residuals.
+    #[test]
+    fn models_are_choices_of_columns() {
+        let all = example();
+        let offset = Column::new(Offset(0), Some(0.4));
+        let names = |of: &OfModel| of.columns.iter().map(|c| (c.label().name, c.prior)).collect::<Vec<_>>();
+        let check = |of: &OfModel, kept: &[usize], left: &[usize]| {
+            assert_eq!(of.origin.c, kept.iter().map(|&k| all.origin.c[k]).collect::<Vec<f64>>());
+            assert_eq!((of.origin.x, of.deviation), (all.origin.x, DEVIATION));
+            for (own, segment) in of.segments.iter().zip(&all.segments) {
+                assert_eq!(own.equations, segment.equations);
+                let rows = own.rows.chunks_exact(kept.len() + 6).zip(segment.rows.chunks_exact(10));
+                for (own, row) in rows {
+                    let taken: f64 = left.iter().map(|&k| row[k] * all.origin.c[k]).sum();
+                    let expected = kept.iter().map(|&k| row[k]).chain(row[4..9].iter().copied());
+                    assert!(own.iter().zip(expected).all(|(a, b)| *a == b), "{own:?} {row:?}");
+                    assert!((own[own.len() - 1] - row[9] + taken).abs() < 1e-14);
+                }
+            }
+        };
+        let (scale, drag) = (("scale", Some(0.2)), ("drag", None));
+        let none = all.of(TorqueModel::None);
+        assert_eq!(names(&none), [scale]);
+        check(&none, &[3], &[0, 1, 2]);
+        let one = all.of(TorqueModel::Drag);
+        assert_eq!(names(&one), [drag, scale]);
+        check(&one, &[1, 3], &[0, 2]);
+        let both = all.of_all(&[TorqueModel::Constant, TorqueModel::Drag]);
+        assert_eq!(names(&both), [drag, ("torque_x", None), scale]);
+        check(&both, &[1, 2, 3], &[0]);
+        // an error has the prior that is given with it, and no torque beside it
+        let error = all.of_errors(&[offset]).unwrap();
+        assert_eq!(names(&error), [("offset_x", Some(0.4)), scale]);
+        check(&error, &[0, 3], &[1, 2]);
+        assert!(all.of_errors(&[offset, Column::new(Offset(1), None)]).is_none());
+        assert!(all.of_errors(&[Column::new(Drag, None)]).is_none());
+
+        assert!(all.errors().len() == 1 && all.errors()[0].is_alike(&offset));
+        let with = all.with_errors(&[Column::new(Scale, None), Column::new(Drag, None)]).unwrap();
+        assert_eq!(with.len(), 3);
+        for (own, segment) in with.iter().zip(&all.segments) {
+            for (own, row) in own.chunks_exact(9).zip(segment.rows.chunks_exact(10)) {
+                assert_eq!(own[..3], [row[0], row[3], row[1]]);
+                assert_eq!(own[3..], row[4..]);
+            }
+        }
+        // errors are not columns of the estimate
+        assert!(all.with_errors(&[offset]).is_none());
+    }
+
+    /// The least of |A (u − origin) + e|² over rows of some segments and the prior of the scale, and where it is.
+    fn least(of: &OfModel, segments: &[usize]) -> (DVector<f64>, f64) {
+        let rows = || segments.iter().flat_map(|&k| of.segments[k].rows.chunks_exact(7));
+        let weight = DEVIATION / 0.2;
+        let prior = [weight, 0.0, 0.0, 0.0, 0.0, 0.0, weight * of.origin.c[0]];
+        let all: Vec<&[f64]> = rows().chain([&prior[..]]).collect();
+        let a = DMatrix::from_fn(all.len(), 6, |i, k| all[i][k]);
+        let e = DVector::from_fn(all.len(), |i, _| all[i][6]);
+        let step = a.tr_mul(&a).cholesky().unwrap().solve(&-a.tr_mul(&e));
+        let squares = (a * &step + e).norm_squared();
+        (step, squares)
+    }
+
+    /// Each segment is foretold by the others, and the mean counts its equations.
+    #[test]
+    fn segments_are_foretold_by_the_others() {
+        let mut of = example().of(TorqueModel::None);
+        let mut squares = 0.0;
+        for (k, others) in [[1, 2], [0, 2], [0, 1]].into_iter().enumerate() {
+            let (step, _) = least(&of, &others);
+            for row in of.segments[k].rows.chunks_exact(7) {
+                let left = row[6] + (0..6).map(|i| row[i] * step[i]).sum::<f64>();
+                squares += left * left;
+            }
+        }
+        let expected = squares / 360.0 / (DEVIATION * DEVIATION);
+        let found = of.held_out().unwrap();
+        assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+        of.segments.truncate(1);
+        assert!(of.held_out().is_none());
+    }
+
+    /// A record is parted where both tensors leave least, each with a scale of its own; its share is that of the equations.
+    #[test]
+    fn a_record_is_parted_where_both_parts_leave_least() {
+        let mut of = example().of(TorqueModel::None);
+        for (parted, share) in [(1, 12.0 / 36.0), (2, 27.0 / 36.0)] {
+            // the segments beyond the border are of another tensor
+            let mut random = Random::new(3);
+            for (k, segment) in of.segments.iter_mut().enumerate() {
+                let size = if k < parted { 10.0 } else { -10.0 };
+                for row in segment.rows.chunks_exact_mut(7) {
+                    row[6] = size * row[3] + 0.1 * random.normal();
+                }
+            }
+            let (found, [before, after]) = of.parted().unwrap();
+            assert!((found - share).abs() < 1e-14, "{found} {share}");
+            let parts: [&[usize]; 2] = if parted == 1 { [&[0], &[1, 2]] } else { [&[0, 1], &[2]] };
+            for (part, segments) in [before, after].iter().zip(parts) {
+                let (step, squares) = least(&of, segments);
+                assert!((part.squares / squares - 1.0).abs() < 1e-9, "{} {squares}", part.squares);
+                let x = part.minimiser().unwrap().x - of.origin.x;
+                assert!((0..5).all(|k| (x[k] - step[k + 1]).abs() < 1e-9));
+            }
+        }
+        of.segments.truncate(1);
+        assert!(of.parted().is_none());
+    }
+}
