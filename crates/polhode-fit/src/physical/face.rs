@@ -261,3 +261,70 @@ impl Newton {
         of_walls.chain(self.held.iter().map(|h| h.abs())).fold(0.0, f64::max)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physical::constraint::Constraint;
+    use crate::physical::coordinates::coordinates;
+    use crate::physical::program::Row;
+
+    /// Multipliers of the lower triangle of a face stand once on the diagonal, and half on each side of it; each wall takes its own.
+    #[test]
+    fn multipliers_fill_a_symmetric_matrix() {
+        let own = ([Vector3::x(), Vector3::y(), Vector3::z()], [0.5, 0.3, 0.2]);
+        let other = ([Vector3::z(), Vector3::x(), Vector3::y()], [0.5, 0.3, 0.2]);
+        let found = multipliers(&[own, other, own], &[2, 1, 0], &[3.0, 4.0, 5.0, 7.0]);
+        let two = Matrix3::new(3.0, 2.0, 0.0, 2.0, 5.0, 0.0, 0.0, 0.0, 0.0);
+        let one = Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, 7.0));
+        assert_eq!(found, [two, one, Matrix3::zeros()]);
+    }
+
+    /// Inside of the law, with an information of 1e6.
+    fn program() -> Program {
+        let inside = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45)));
+        let centre = DVector::from_column_slice(inside.as_slice());
+        Program::new(centre, DMatrix::identity(5, 5) * 1e3, &[])
+    }
+
+    /// What was checked of an answer that is none.
+    fn refused(program: &Program, newton: Newton, faces: &[usize], held: &[usize]) -> Certificate {
+        match program.certify(newton, faces, held, 5) {
+            Err(SolverFailure::NotOptimal(certificate)) => certificate,
+            _ => panic!("certified"),
+        }
+    }
+
+    /// An answer that is moved without a reason is not stationary; a multiplier off the wall or below zero, and a row that is broken, are told as
+    /// shares of the largest.
+    #[test]
+    fn what_is_no_answer_is_not_certified() {
+        let mut program = program();
+        let none = || Newton { y: DVector::zeros(5), zs: vec![Matrix3::zeros()], held: Vec::new() };
+        let right = program.certify(none(), &[0], &[], 7).unwrap_or_else(|error| panic!("{error}"));
+        assert!(right.active.is_empty() && right.pull == 0.0 && right.certificate.rounds == 7);
+
+        let y = DVector::from_vec(vec![3.0, 0.0, -4.0, 0.0, 0.0]);
+        let moved = refused(&program, Newton { y, ..none() }, &[0], &[]);
+        assert!((moved.stationarity - 5.0 / 6.0).abs() < 1e-14 && moved.rounds == 5, "{moved:?}");
+        assert_eq!((moved.violation, moved.dual_violation), (0.0, 0.0));
+
+        // 0.05 of the trace off the wall; the gradient of a moment has the square 2/3
+        for (multiplier, dual) in [(-2.0, 2.0 / 3.0), (2.0, 0.0)] {
+            let zs = vec![Matrix3::from_diagonal(&Vector3::new(0.0, 0.0, multiplier))];
+            let pushed = refused(&program, Newton { zs, ..none() }, &[1], &[]);
+            assert!((pushed.dual_violation - dual).abs() < 1e-14, "{pushed:?}");
+            assert!((pushed.violation - 2.0 * 0.05 / 3.0).abs() < 1e-12, "{pushed:?}");
+            let gradient = 2e-3 * (2.0_f64 / 3.0).sqrt();
+            assert!((pushed.stationarity / gradient - 1.0).abs() < 1e-12, "{pushed:?}");
+        }
+
+        let row = Row { base: 0.125, g: DVector::from_vec(vec![0.0, 2.0, 0.0, 0.0, 0.0]) };
+        program.rows.push((row, Constraint::Drag { name: "drag" }, 1.0));
+        let broken = refused(&program, none(), &[0], &[]);
+        assert_eq!((broken.stationarity, broken.violation, broken.dual_violation), (0.0, 0.125, 0.0));
+        let held = refused(&program, Newton { held: vec![-0.5], ..none() }, &[0], &[0]);
+        assert_eq!((held.stationarity, held.violation), (1.0, 0.125));
+        assert!((held.dual_violation - 0.5 / 1.5).abs() < 1e-15, "{held:?}");
+    }
+}

@@ -229,3 +229,87 @@ impl Program {
         ]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physical::coordinates::coordinates;
+
+    /// A drag below zero beside a tensor of which one moment is beyond the law.
+    fn program() -> Program {
+        let j = Matrix3::new(0.15, 0.02, -0.01, 0.02, 0.3, 0.03, -0.01, 0.03, 0.55);
+        let centre = [-0.02].into_iter().chain(coordinates(&j).iter().copied().collect::<Vec<f64>>());
+        let root = DMatrix::from_fn(6, 6, |i, k| match k.checked_sub(i) {
+            None => 0.0,
+            Some(0) => 40.0 + i as f64,
+            Some(_) => ((3 * i + 5 * k) % 7) as f64,
+        });
+        let of = [Dissipation { place: 0, name: "drag" }];
+        Program::new(DVector::from_iterator(6, centre), root, &of)
+    }
+
+    fn increments() -> DVector<f64> {
+        DVector::from_fn(6, |k, _| 0.7 - 0.3 * k as f64)
+    }
+
+    /// Readings of both kinds of walls are those of their matrices at any increments, and what pushes is the gradient of a product with it.
+    #[test]
+    fn readings_are_those_of_the_matrix() {
+        let (program, y) = (program(), increments());
+        let base = Matrix3::new(0.3, 0.0, 0.1, 0.0, -0.2, 0.0, 0.1, 0.0, 0.4);
+        let (v, w) = (Vector3::new(0.3, -0.5, 0.7), Vector3::new(-0.2, 0.4, 0.9));
+        let z = Matrix3::new(0.4, 0.1, 0.0, 0.1, 0.2, -0.3, 0.0, -0.3, 0.7);
+        let zero = DVector::zeros(6);
+        for wall in [Wall::law(1), Wall::body(0, &base)] {
+            let (here, start) = (program.matrix(&wall, &y), program.matrix(&wall, &zero));
+            for (v, w) in [(v, v), (v, w), (w, v)] {
+                let expected = v.dot(&(here * w));
+                assert!((program.reading(&wall, &v, &w).at(&y) - expected).abs() < 1e-14);
+            }
+            let expected = z.dot(&(here - start));
+            assert!((program.push(&wall, &z).dot(&y) - expected).abs() < 1e-14);
+            assert_eq!((wall.rank, wall.unit), (2, 1.0));
+        }
+        // of a tensor T without its half trace: the entries from the first on, and what is added to them
+        let own = program.unknowns(&y);
+        let t = base + (0..6).fold(Matrix3::zeros(), |sum, k| sum + symmetric(k) * own[k]);
+        let expected = t - Matrix3::identity() * (0.5 * t.trace());
+        assert!((program.matrix(&Wall::body(0, &base), &y) - expected).amax() < 1e-15);
+        assert_eq!((Wall::law(0).most, Wall::body(0, &base).most), (0.5, 0.0));
+    }
+
+    /// The cone of two axes has the square of its height less that of its width as four times the minor of ½ − J along them.
+    #[test]
+    fn cones_are_minors_of_what_is_left_to_the_law() {
+        let program = program();
+        let wall = &program.walls[0];
+        let (moments, axes) = eigen(program.matrix(wall, &DVector::zeros(6)));
+        for k in 0..2 {
+            let cone = program.minor(wall, &axes, &moments, k, 3.0);
+            for y in [increments(), increments() * -2.0, DVector::zeros(6)] {
+                let here = Matrix3::identity() * 0.5 - program.matrix(wall, &y);
+                let (top, other) = (axes.column(2).into_owned(), axes.column(k).into_owned());
+                let (p, q) = (top.dot(&(here * top)), other.dot(&(here * other)));
+                let c = top.dot(&(here * other));
+                let [height, apart, across] = cone.each_ref().map(|row| row.at(&y));
+                let square = height * height - apart * apart - across * across;
+                assert!((square - 4.0 * (p * q - c * c)).abs() < 1e-14, "{k}: {square:e}");
+                assert!((across.abs() - 2.0 * c.abs()).abs() < 1e-14, "{k}: {across:e}");
+            }
+        }
+    }
+
+    /// The row of a drag is minus its value in thousands of its deviations, by the inverse of the information.
+    #[test]
+    fn drag_is_measured_by_its_deviation() {
+        let (program, y) = (program(), increments());
+        let covariance = program.root.tr_mul(&program.root).try_inverse().unwrap();
+        let deviation = covariance[(0, 0)].sqrt();
+        assert!((program.deviation(0) / deviation - 1.0).abs() < 1e-12);
+        let [(row, constraint, unit)] = &program.rows[..] else { panic!() };
+        assert_eq!(*constraint, Constraint::Drag { name: "drag" });
+        assert!((unit * SHARE / deviation - 1.0).abs() < 1e-12);
+        assert!((row.at(&y) + program.unknowns(&y)[0] / unit).abs() < 1e-12, "{}", row.at(&y));
+        assert!(row.at(&DVector::zeros(6)) > 0.0, "a drag below zero breaks the law");
+    }
+}
