@@ -48,3 +48,27 @@ pub enum TorqueNoise {
     #[default]
     Fitted,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Models are written as the command asks for them, and padded as a table asks.
+    #[test]
+    fn models_are_written_by_their_names() {
+        let models = [
+            (TorqueModel::None, "none"),
+            (TorqueModel::Drag, "drag"),
+            (TorqueModel::Drag3, "drag3"),
+            (TorqueModel::Quadratic, "quadratic"),
+            (TorqueModel::Constant, "constant"),
+            (TorqueModel::Auto, "auto"),
+        ];
+        for (model, name) in models {
+            assert_eq!(model.to_string(), name);
+            assert_eq!(format!("{model:>9}"), format!("{name:>9}"));
+        }
+        assert_eq!(TorqueModel::default(), TorqueModel::Auto);
+        assert_eq!(TorqueNoise::default(), TorqueNoise::Fitted);
+    }
+}

@@ -83,3 +83,86 @@ fn check_sensors(record: &Record) -> Result<(), FitError> {
     }
     Ok(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Twenty samples a tenth of a second apart.
+    fn segment(source: &str, from: f64, rate: Vector3<f64>) -> Segment {
+        let times = (0..20).map(|k| from + 0.1 * f64::from(k)).collect();
+        Segment::new(source, times, vec![rate; 20]).unwrap()
+    }
+
+    fn record(segments: [Segment; 2]) -> Record {
+        let mut record = Record::default();
+        record.segments.extend(segments);
+        record
+    }
+
+    /// Rates of 5 rad/s are 1, times five times as long, each from its own start; of momenta over 5 and torques over 25 the largest is 1.
+    #[test]
+    fn a_record_is_measured_by_its_own_rate() {
+        let one = segment("one", 2.0, Vector3::new(0.0, 3.0, -4.0));
+        let one = one.with_wheel(vec![Vector3::new(20.0, -10.0, 0.0); 20]).unwrap();
+        let one = one.with_torque(vec![Vector3::new(0.0, 0.0, -150.0); 20]).unwrap();
+        let two = segment("two", 0.0, Vector3::new(-5.0, 0.0, 0.0));
+        let two = two.with_wheel(vec![Vector3::z(); 20]).unwrap();
+        let two = two.with_torque(vec![Vector3::zeros(); 20]).unwrap();
+        let Normalised { stretches, rms, input } = normalised(&record([one, two])).ok().unwrap();
+        assert!((rms - 5.0).abs() < 1e-14 && (input.unwrap() - 6.0).abs() < 1e-14, "{rms} {input:?}");
+        let [one, two] = &stretches[..] else { panic!() };
+        assert_eq!((one.index, one.segment, one.start), (0, 0, 2.0));
+        assert_eq!((two.index, two.segment, two.start), (1, 1, 0.0));
+        for s in &stretches {
+            assert!(s.times[0] == 0.0 && (s.times[19] - 9.5).abs() < 1e-13, "{:?}", s.times);
+        }
+        assert!((one.rates[7] - Vector3::new(0.0, 0.6, -0.8)).amax() < 1e-14);
+        assert!((two.rates[7] - Vector3::new(-1.0, 0.0, 0.0)).amax() < 1e-14);
+        let (of_one, of_two) = (one.inputs.as_ref().unwrap(), two.inputs.as_ref().unwrap());
+        assert!((of_one.wheel[3] - Vector3::new(20.0, -10.0, 0.0) / 30.0).amax() < 1e-14);
+        assert!((of_one.torque[3] - Vector3::new(0.0, 0.0, -1.0)).amax() < 1e-14);
+        assert!((of_two.wheel[3] - Vector3::z() / 30.0).amax() < 1e-14);
+        assert_eq!(of_two.torque[3], Vector3::zeros());
+    }
+
+    /// Squares of rates neither under- nor overflow, and momenta that are zero have no unit.
+    #[test]
+    fn rates_of_any_size_have_a_mean_square() {
+        for size in [1e-200, 1e200] {
+            let segments = [Vector3::new(0.0, 0.6, 0.8), Vector3::x()].map(|rate| {
+                let times = (0..20).map(|k| f64::from(k) / size).collect();
+                let segment = Segment::new("any", times, vec![rate * size; 20]).unwrap();
+                segment.with_wheel(vec![Vector3::zeros(); 20]).unwrap()
+            });
+            let Normalised { stretches, rms, input } = normalised(&record(segments)).ok().unwrap();
+            assert!((rms / size - 1.0).abs() < 1e-14 && input.is_none(), "{rms:e} {input:?}");
+            assert!(stretches.iter().all(|s| s.inputs.is_none()));
+        }
+    }
+
+    /// Too few samples, no rotation, and segments of which only one has wheels or torques are refused with their places.
+    #[test]
+    fn records_without_a_unit_are_refused() {
+        let refused = |segments: [Segment; 2]| normalised(&record(segments)).err().unwrap();
+        let spin = |source: &str, from: f64| segment(source, from, Vector3::z());
+        let short = |count: usize| {
+            let times = (0..count).map(|k| k as f64).collect();
+            Segment::new("short", times, vec![Vector3::z(); count]).unwrap()
+        };
+        let few =
+            FitError::TooFewSamples { samples: 29, segments: 2, longest: 15, saturated: 0, needed: 16 };
+        assert_eq!(refused([short(15), short(14)]), few);
+        assert!(normalised(&record([short(16), short(3)])).is_ok());
+        let still = [0.0, 3.0].map(|from| segment("still", from, Vector3::zeros()));
+        assert_eq!(refused(still), FitError::NoRotation { rms: 0.0, noise: 0.0 });
+        let (with, without) = ("segment 2 (two, from 0.5 s)".into(), "segment 1 (one, from 2 s)".into());
+        let wheel = spin("two", 0.5).with_wheel(vec![Vector3::x(); 20]).unwrap();
+        let expected = FitError::Sensors { what: "wheel momenta", with, without };
+        assert_eq!(refused([spin("one", 2.0), wheel]), expected);
+        let (with, without) = ("segment 1 (two, from 0.5 s)".into(), "segment 2 (one, from 2 s)".into());
+        let torque = spin("two", 0.5).with_torque(vec![Vector3::x(); 20]).unwrap();
+        let expected = FitError::Sensors { what: "torques", with, without };
+        assert_eq!(refused([torque, spin("one", 2.0)]), expected);
+    }
+}

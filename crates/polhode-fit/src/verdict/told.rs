@@ -87,3 +87,52 @@ fn factor(weak: &WeakEstimate, axis: usize, variance: f64) -> Option<ToldCompone
     let deviation = (variance * weak.misfit(variance).max(1.0)).sqrt();
     Some(ToldComponent { axis, factor: 1.0 + more / all, sigma: slope.norm() * deviation })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::columns::column::Unknowns;
+    use crate::columns::input::Input;
+    use crate::physical::coordinates::{Coordinates, Form};
+    use crate::solve::stacked::Stacked;
+
+    /// An estimate of the factor u = 0.5 of all momenta and of c = 0.1 beside it for the y axis, which are known to a fiftieth and a
+    /// hundredth of the noise, each by itself.
+    fn estimate(columns: Vec<Column>) -> WeakEstimate {
+        let at = Unknowns { x: Coordinates::zeros(), c: vec![0.5, 0.1] };
+        let rows: Vec<f64> = (0..7)
+            .flat_map(|i| (0..8).map(move |k| if i == k { [50.0, 100.0, 10.0][i.min(2)] } else { 0.0 }))
+            .collect();
+        let stacked = Stacked::new(&[rows.as_slice()], &columns, &at, 1.0);
+        WeakEstimate {
+            radius: 1.0,
+            columns,
+            at,
+            moved: 0.0,
+            root: stacked.root,
+            doubt: Form::zeros(),
+            squares: 100.0,
+            rows: 105,
+            stacked: Some(stacked),
+            parts: Vec::new(),
+        }
+    }
+
+    /// A component is 1 + c/u times as large as told, with the deviation of that: of c over u, and of u times c/u².
+    #[test]
+    fn a_component_is_so_many_times_as_large() {
+        let (input, own) = (Column::new(Input, None), Column::new(WheelAxis(1), None));
+        let weak = estimate(vec![input, own]);
+        // of a variance of 0.25 the misfit is 4: the deviation of a reading is 1
+        let told = factor(&weak, 1, 0.25).unwrap();
+        assert!(told.axis == 1 && (told.factor - 1.2).abs() < 1e-15, "{told:?}");
+        let (of_c, of_u): (f64, f64) = (0.01 / 0.5, 0.02 * 0.1 / 0.25);
+        let sigma = (of_c * of_c + of_u * of_u).sqrt();
+        assert!((told.sigma / sigma - 1.0).abs() < 1e-8, "{told:?} {sigma}");
+        // what is less than the noise narrows nothing
+        let quiet = factor(&weak, 1, 4.0).unwrap();
+        assert!((quiet.sigma / (2.0 * sigma) - 1.0).abs() < 1e-8, "{quiet:?} {sigma}");
+        assert!(factor(&weak, 0, 0.25).is_none() && factor(&weak, 2, 0.25).is_none());
+        assert!(factor(&estimate(vec![own, own]), 1, 0.25).is_none());
+    }
+}
