@@ -1,14 +1,19 @@
 //! Refusals and warnings say their numbers.
 
+use crate::columns::column::Column;
+use crate::columns::drag::Drag;
+use crate::columns::offset::Offset;
 use crate::error::{Clash, FitError, ToldComponent};
 use crate::models::reading_error::ReadingError;
 use crate::physical::constraint::Constraint;
 use crate::physical::coordinates::{Coordinates, Form};
 use crate::report::identifiability::{Identifiability, PrincipalAxis};
 use crate::report::next_step::{Contradiction, NextStep, Origin};
+use crate::report::nuisance::{FittedTorque, Nuisance};
 use crate::report::parts::{Halves, Scatter};
 use crate::report::torque_free::{InvariantTrend, Memory};
 use crate::report::warning::Warning;
+use crate::settings::torque::TorqueModel;
 use crate::units::product::UnitProduct;
 use nalgebra::{Matrix3, Vector3};
 use polhode::units::RateUnit;
@@ -134,6 +139,39 @@ fn warnings_say_their_numbers() {
     says(Warning::Memory(Memory { chi2: 99.0, dof: 27 }), &["99 of 27"]);
     says(Warning::MomentumTrend(InvariantTrend { rate: -0.01, sigma: 0.001 }), &["-1.00 +- 0.10 per cent"]);
     says(Warning::Uncertain { deviation: 0.0123 }, &["1.2 per cent"]);
+    says(
+        Warning::TorqueNoise { density: 2.5e-4, unexplained: Some(0.25) },
+        &["density of up to 2.5e-4 (rad/s^2)^2 s, and free motion leaves 25 % of"],
+    );
+    let noise = Warning::TorqueNoise { density: 2.5e-4, unexplained: None }.to_string();
+    assert!(noise.contains("2.5e-4 (rad/s^2)^2 s; errors") && !noise.contains("free motion"), "{noise}");
+    says(Warning::ShortSegments { short: 1, segments: 4 }, &["1 of 4 segments was left out"]);
+    says(Warning::ShortSegments { short: 2, segments: 4 }, &["2 of 4 segments were left out"]);
+    says(Warning::Spikes { samples: 3, line: 17 }, &["3 samples were left out", "in line 17"]);
+    says(Warning::Repeated { samples: 9, rate: 149.981 }, &["9 samples were", "come at 150 Hz"]);
+    says(Warning::Repeated { samples: 9, rate: 33.336 }, &["come at 33.34 Hz"]);
+    says(Warning::Stale { samples: 1 }, &["1 sample was left out as repeating"]);
+    says(Warning::NotConverged { moved: 0.256 }, &["by 0.26 standard deviations"]);
+    let units = Warning::Units { products: vec![UnitProduct::numbered(0.1)], unexplained: 0.5, other: 0.13 };
+    says(units, &["times in numbers of samples read as s would explain", "(13 % of", "left, 50 % as read)"]);
+    says(Warning::Vibration { times: 1.256, noise: 2e-3 }, &["leaves 1.26 times", "of 2.000e-3 rad/s"]);
+    says(
+        Warning::ConstantTorque { gain: 9.26, turn: 0.256 },
+        &["higher by 9.3)", "by 0.26 rad within", "less than 0.1 rad"],
+    );
+    says(Warning::Contradiction { pull: 7.26 }, &["7.3 standard deviations"]);
+    says(Warning::EqualMoments { low: 2, high: 3 }, &["moments 2 and 3 agree"]);
+    says(Warning::AttitudeResiduals { times: 2.56, noise: 0.02 }, &["leaves 2.6 times", "of 2.00e-2 rad"]);
+    says(Warning::MovingAxes { turn: 0.02, gain: 60.4 }, &["by 2.00e-2 rad from", "higher by 60)"]);
+    says(Warning::Profile { times: 1.76 }, &["are 1.8 times those"]);
+    says(Warning::RepeatedAttitudes { samples: 2 }, &["2 samples were left out as repeating"]);
+    says(Warning::FewEquations { dof: 7 }, &["only 7 degrees of freedom"]);
+    let left_out = |unit, origin| Warning::LeftOut { what: "it", size: 0.05, unit, gain: 60.4, origin };
+    says(left_out("rad/s", Origin::Sensor), &["it, up to 5.0e-2 rad/s, would", "by 60)", "with a prior"]);
+    says(left_out("", Origin::Wheels), &["it, up to 5.0e-2, would", "speed of each wheel"]);
+    for origin in [Origin::Drift, Origin::Body] {
+        assert!(left_out("s", origin).to_string().ends_with("off by more than its deviations"));
+    }
     says(ReadingError::Misalignment.of_size(0.01), &["0.57 deg"]);
     says(ReadingError::AxisScales.of_size(0.0234), &["2.3 %"]);
     says(ReadingError::Offsets.of_size(0.01), &["0.57 deg/s"]);
@@ -183,4 +221,20 @@ fn units_are_told_by_their_product() {
     assert!(degrees.iter().any(|product| near(Some(product.factor), 1.0 / degree)));
     let turns = UnitProduct::common(RateUnit::RevolutionsPerMinute);
     assert!(turns.iter().all(|product| product.rates[1] == "rpm"));
+}
+
+/// A torque that was found is said with each of its coefficients, and with the ratios that the tensor would have without it.
+#[test]
+fn torques_are_said_with_their_coefficients() {
+    let of = |column: Column, value: f64, sigma: f64| Nuisance::new(&column, value, sigma, 2.0);
+    let coefficients =
+        vec![of(Column::new(Drag, None), 0.025, 1e-3), of(Column::new(Offset(1), None), -0.5, 0.06)];
+    let torque = |ratios_without| {
+        let (model, gain, coefficients) = (TorqueModel::Drag, Some(12.0), coefficients.clone());
+        Warning::Torque(FittedTorque { model, is_chosen: true, coefficients, gain, ratios_without })
+    };
+    let reckoned = "drag 0.0500 +- 0.0020 1/s, offset_y -1.00 +- 0.12 rad/s";
+    assert_eq!(torque(None).to_string(), format!("not free of torques: the fit reckons with {reckoned}"));
+    let without = "; without it I1/I3 would be 0.5000 and I2/I3 0.7500";
+    assert!(torque(Some([0.5, 0.75])).to_string().ends_with(&format!("{reckoned}{without}")));
 }

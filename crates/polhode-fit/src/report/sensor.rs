@@ -214,3 +214,63 @@ impl Tried<'_> {
         Some((stacked.minimiser()?, gain))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::columns::drag::Drag;
+    use crate::estimator::fitted;
+    use crate::report::systematic::errors;
+    use crate::settings::Settings;
+    use crate::settings::torque::{TorqueModel, TorqueNoise};
+    use crate::signal::normalised::{Normalised, normalised};
+    use crate::simulate::simulate;
+    use nalgebra::Vector3;
+    use polhode::inertia::Inertia;
+    use polhode::num::Random;
+    use polhode::record::Record;
+
+    /// Beside an estimate without a torque errors gain what they gain in the place of one, at the same tensor, and their units lead to SI.
+    #[test]
+    fn gains_beside_an_estimate_are_those_of_its_equations() {
+        let (body, sigma) = (Inertia::from_moments([1.0, 2.0, 2.6]).unwrap(), 2e-3);
+        let times: Vec<f64> = (0..600).map(|k| 0.05 * f64::from(k)).collect();
+        let start = Vector3::new(1.0, 1.6, -0.8);
+        let rates = simulate(&body, start, &times, sigma, &mut Random::new(4)).unwrap();
+        let record = Record::from_samples(&times, &rates).unwrap();
+        let settings = Settings::default().with_noise(sigma).with_torque(TorqueModel::None);
+        let settings = settings.with_torque_noise(TorqueNoise::None).with_check_units(false);
+        let weak = fitted(&record, &settings).unwrap().drawn.unwrap().weak;
+        let Normalised { stretches, rms, .. } = normalised(&record).unwrap();
+        let variance = (sigma / rms) * (sigma / rms);
+        let own = errors(&[], &stretches, rms);
+        let equations = Equations::new(&stretches, &weak, &own, &[], variance).unwrap();
+        let whitened = equations.with_errors(&[]).unwrap();
+        let tried = Tried { weak: &weak, errors: equations.errors(), whitened: &whitened, variance };
+        let kinds = kinds(&weak, &stretches, rms);
+        let units: Vec<(f64, &str)> = kinds.iter().map(|kind| kind.unit).collect();
+        // misalignments, scales, offsets, delays, walks, wheels, magnets
+        let expected = [
+            (1.0, "rad"),
+            (1.0, ""),
+            (rms, "rad/s"),
+            (1.0 / rms, "s"),
+            (rms, "rad/s"),
+            (1.0, "of |L|"),
+            (rms * rms, "rad/s^2"),
+        ];
+        assert_eq!(units, expected);
+        for kind in &kinds {
+            let (at, gain) = tried.with(&kind.columns).unwrap();
+            let alone = equations.of_errors(&kind.columns).unwrap().stacked();
+            let expected = 0.5 * (weak.squares - alone.squares) / variance;
+            let near = 1e-6 * (1.0 + expected.abs());
+            assert!((gain - expected).abs() < near, "{}: {gain} {expected}", kind.what);
+            // more unknowns leave no more, but for what the last round would have moved the estimate by
+            assert!(at.c.len() == kind.columns.len() && gain > -0.1, "{}: {gain}", kind.what);
+            let apart = (alone.root * (at.x - alone.minimiser().unwrap().x)).norm();
+            assert!(apart < 1e-3 * variance.sqrt(), "{}: {apart:e}", kind.what);
+        }
+        assert!(tried.with(&[]).is_none() && tried.with(&[Column::new(Drag, None)]).is_none());
+    }
+}

@@ -1,9 +1,10 @@
 //! Simulated records against closed forms of the motion and against the stated errors of the sensor.
 
 use nalgebra::{Matrix3, Vector3};
+use polhode::body::Wheel;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
-use polhode_fit::{Disturbances, Gyroscope, SimulationError, simulate, simulate_with};
+use polhode_fit::{Disturbances, Gyroscope, SimulationError, simulate, simulate_poses, simulate_with};
 
 fn grid(until: f64, count: usize) -> Vec<f64> {
     (0..=count).map(|i| until * i as f64 / count as f64).collect()
@@ -262,4 +263,55 @@ fn rates_of_another_simulation_are_read_with_the_same_errors() {
     let late = with.clone().with_skew(Vector3::new(0.0, 0.0, -0.25));
     assert_eq!(refused(&late, &exact), ("a time skew", -0.25));
     assert_eq!(refused(&with, &exact[1..]), ("the number of rates", 20.0));
+}
+
+/// Motors turn wheels against the body while they work, before time 0 as after it: on one axis the body loses what the wheels gain.
+#[test]
+fn motors_turn_the_body_back_while_they_work() {
+    let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+    let before = Vector3::new(0.0, 0.0, 0.5);
+    let wheel = |inertia: f64, speed: f64| Wheel::new(Vector3::z() * 2.0, inertia, speed).unwrap();
+    let wheels = vec![
+        wheel(0.01, 30.0).driven(0.26, [-2.0, 1.5], before).unwrap(),
+        wheel(0.02, -10.0).driven(-0.52, [2.0, 3.0], before).unwrap(),
+    ];
+    let (by, none) = (Disturbances::default().with_wheels(wheels), Gyroscope::default());
+    let times: [f64; 10] = [-3.0, -2.0, -1.25, 0.0, 1.0, 1.5, 2.0, 2.5, 3.0, 7.0];
+    let read = simulate_poses(&body, Vector3::z(), &times, &by, &none, 0.0, &mut Random::new(1)).unwrap();
+    for (k, t) in times.iter().enumerate() {
+        // how long each has worked, the first for 2 s before time 0
+        let (one, two) = (t.clamp(-2.0, 1.5) + 2.0, t.clamp(2.0, 3.0) - 2.0);
+        let turned = 1.0 - (0.26 * (one - 2.0) - 0.52 * two) / 2.6;
+        assert!((read.rates[k] - Vector3::z() * turned).amax() < 1e-13, "{t}: {}", read.rates[k]);
+        // relative to the body, which takes part in the turn of both
+        let momentum = 0.01 * 30.5 + 0.26 * one - 0.02 * 9.5 - 0.52 * two - 0.03 * turned;
+        assert!((read.wheel[k] - Vector3::z() * momentum).amax() < 1e-13, "{t}: {}", read.wheel[k]);
+    }
+}
+
+/// A motion that is followed backwards, and from there forwards again, is the same in rates and attitudes.
+#[test]
+fn a_motion_followed_backwards_comes_back() {
+    let tensor = Matrix3::new(2.0, 0.3, -0.1, 0.3, 1.7, 0.2, -0.1, 0.2, 1.1);
+    let body = Inertia::from_tensor(tensor).unwrap();
+    let by = Disturbances::default()
+        .with_relative_drag(0.02)
+        .with_drag(Vector3::new(0.01, 0.02, 0.03))
+        .with_torque(Vector3::new(0.05, -0.03, 0.02))
+        .with_wheel(Vector3::new(0.4, 0.0, -0.3));
+    let of = |start: Vector3<f64>, times: &[f64]| {
+        simulate_poses(&body, start, times, &by, &Gyroscope::default(), 0.0, &mut Random::new(1)).unwrap()
+    };
+    let start = Vector3::new(0.3, -0.8, 0.6);
+    let back = of(start, &[-1.0, -5.0, 0.0]);
+    let again = of(back.rates[1], &[4.0, 5.0]);
+    assert!((back.rates[2] - start).amax() < 1e-14);
+    for (k, earlier) in [(0, back.rates[0]), (1, start)] {
+        assert!((again.rates[k] - earlier).amax() < 1e-11, "{k}: {} {earlier}", again.rates[k]);
+    }
+    for (k, earlier) in [(0, back.attitudes[0]), (1, back.attitudes[2])] {
+        let apart = (back.attitudes[1] * again.attitudes[k]).inverse() * earlier;
+        assert!(apart.imag().norm() < 1e-11, "{k}: {apart}");
+    }
+    assert!((again.rates[1] - again.rates[0]).amax() > 1e-2);
 }
