@@ -295,3 +295,53 @@ pub(crate) fn group(stretch: &Stretch, noise: &[Vector3<f64>], range: Range<usiz
         square,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn stretch() -> Stretch {
+        let times = vec![0.0, 0.05, 0.1, 0.12, 0.3, 0.31, 0.9];
+        let mut rates = vec![Vector3::zeros(); 7];
+        (rates[4], rates[5]) = (Vector3::new(1.0, 2.0, 3.0), Vector3::new(3.0, 2.0, 5.0));
+        let mut wheel = vec![Vector3::zeros(); 7];
+        (wheel[4], wheel[5]) = (Vector3::new(1.0, 0.0, 0.0), Vector3::new(3.0, 4.0, 0.0));
+        let inputs = Some(KnownInputs { wheel, torque: vec![Vector3::zeros(); 7] });
+        let weights = vec![1.0, 1.0, 1.0, 1.0, 0.5, 0.25, 1.0];
+        Stretch { weights, inputs, ..Stretch::new(times, rates) }
+    }
+
+    /// Groups last a twelfth of a radius, and at most 0.15; each begins with the first sample that the one before does not hold.
+    #[test]
+    fn groups_follow_each_other_without_a_gap() {
+        let s = stretch();
+        let of = |radius: f64, low: usize| ranges(&s, radius, low).collect::<Vec<Range<usize>>>();
+        assert_eq!(of(0.66, 0), [0..2, 2..4, 4..6, 6..7]);
+        assert_eq!(of(1.8, 0), [0..4, 4..6, 6..7]);
+        assert_eq!(of(100.0, 0), of(1.8, 0));
+        assert_eq!(of(1.8, 4), [4..6, 6..7]);
+        assert!(of(1.8, 7).is_empty());
+        assert_eq!(of(0.012, 0).len(), 7);
+    }
+
+    /// A group has the mean time, rate and momentum of its samples, the mean square of what they differ from that, and the sums of their weights and
+    /// of the squares of these.
+    #[test]
+    fn a_group_has_the_means_of_its_samples() {
+        let s = stretch();
+        let mut noise = vec![Vector3::zeros(); 7];
+        (noise[4], noise[5]) = (Vector3::new(0.0, 0.0, 1.0), Vector3::new(0.0, 2.0, 1.0));
+        let own = group(&s, &noise, 4..6);
+        assert!((own.time - 0.305).abs() < 1e-15);
+        // of (1, 2, 2) and (3, 0, 4)
+        assert_eq!(own.reading, Vector3::new(2.0, 1.0, 3.0));
+        assert_eq!(own.scatter, Matrix3::new(1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0, -1.0, 1.0));
+        assert_eq!(own.wheel, Vector3::new(2.0, 2.0, 0.0));
+        assert_eq!((own.weight, own.square), (0.75, 0.3125));
+        let all = groups(&s, &noise, 1.8).map(|group| group.weight);
+        assert_eq!(all.collect::<Vec<f64>>(), [4.0, 0.75, 1.0]);
+        let one = group(&s, &noise, 5..6);
+        assert_eq!((one.reading, one.scatter), (Vector3::new(3.0, 0.0, 4.0), Matrix3::zeros()));
+        assert_eq!(group(&Stretch { inputs: None, ..s }, &noise, 4..6).wheel, Vector3::zeros());
+    }
+}

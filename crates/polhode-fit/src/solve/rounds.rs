@@ -482,7 +482,11 @@ impl<'a> Rounds<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::columns::drag::Drag;
+    use crate::columns::offset::Offset;
+    use crate::columns::scale::Scale;
     use crate::physical::coordinates::coordinates;
+    use crate::signal::covariance::Shape;
     use nalgebra::Matrix3;
 
     fn moments(a: f64, b: f64, c: f64) -> Coordinates {
@@ -505,5 +509,39 @@ mod tests {
         // no stretch holds a test function of that size
         let at = Unknowns { x: moments(0.4, 0.1, 0.5), c: Vec::new() };
         assert!(Rounds::new(&stretches, 5.0, &[], at).is_none());
+    }
+
+    /// Rounds go on with the levels and the noise of each stretch by its number, with the tensor, and with the columns that both have; a stretch
+    /// that is not among the others is like the first of a part of the record, and of a whole one they do not go on.
+    #[test]
+    fn rounds_go_on_from_where_others_ended() {
+        let times: Vec<f64> = (0..100).map(|k| 0.1 * f64::from(k)).collect();
+        let stretches = [0, 1].map(|_| Stretch::new(times.clone(), vec![Vector3::x(); 100]));
+        let (drag, offset) = (Column::new(Drag, None), Column::new(Offset(0), Some(0.1)));
+        let columns = [drag, offset];
+        let level = |torque: f64| Levels { white: 1.5, torque, shape: Shape::Alike };
+        let x = moments(0.4, 0.1, 0.5);
+        let from = |stretches: Vec<ReachedBy>| Reached {
+            columns: vec![offset.with_prior(None), Column::new(Scale, None)],
+            at: Unknowns { x, c: vec![0.3, 0.7] },
+            stretches,
+            driven: true,
+        };
+        let by = |stretch: usize, samples: Option<usize>| {
+            let noise = samples.map(|samples| vec![Vector3::y(); samples]);
+            ReachedBy { stretch, levels: level(1.0 + stretch as f64), noise }
+        };
+        let resumed = |of: Vec<ReachedBy>| {
+            let at = Unknowns { x: Coordinates::zeros(), c: vec![0.1, 0.2] };
+            Rounds::new(&stretches, 1.0, &columns, at).unwrap().resumed(from(of))
+        };
+        let found = resumed(vec![by(1, Some(100)), by(0, None)]).unwrap();
+        assert_eq!(found.levels, [level(1.0), level(2.0)]);
+        assert_eq!(found.noise, [vec![Vector3::zeros(); 100], vec![Vector3::y(); 100]]);
+        assert_eq!((found.at.x, found.at.c), (x, vec![0.1, 0.3]));
+        assert!(found.resumed && found.driven);
+        assert_eq!(resumed(vec![by(0, None)]).unwrap().levels, [level(1.0), level(1.0)]);
+        assert!(resumed(vec![by(1, Some(100))]).is_none());
+        assert!(resumed(vec![by(0, Some(100)), by(1, Some(99))]).is_none());
     }
 }

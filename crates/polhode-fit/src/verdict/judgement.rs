@@ -169,6 +169,8 @@ fn identify(weak: &WeakEstimate, stretches: &[Stretch], variance: f64) -> Option
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::columns::column::Unknowns;
+    use crate::physical::coordinates::Coordinates;
     use nalgebra::Vector3;
 
     /// The mean of ω ωᵀ counts each sample once, in whatever stretch it is.
@@ -179,5 +181,39 @@ mod tests {
         let stretches = [Stretch::new(vec![0.0, 1.0, 2.0], three), Stretch::new(vec![0.0], one)];
         let expected = Matrix3::new(2.0, 0.0, 1.0, 0.0, 4.0, 0.0, 1.0, 0.0, 10.0) / 4.0;
         assert_eq!(scatter_of(&stretches), expected);
+    }
+
+    /// Where no tensor explains rates that fall, their fall is told in 1/s if no torque was to be fitted; a rise is none. The noise is told in the
+    /// unit of the rates.
+    #[test]
+    fn a_fall_is_told_where_no_torque_was_fitted() {
+        let at = Unknowns { x: Coordinates::zeros(), c: Vec::new() };
+        let (root, doubt) = (Form::identity(), Form::zeros());
+        let (columns, parts) = (Vec::new(), Vec::new());
+        let (radius, moved, stacked) = (1.0, f64::INFINITY, None);
+        let weak =
+            WeakEstimate { radius, columns, at, moved, root, stacked, doubt, squares: 0.0, rows: 20, parts };
+        let of = |slope: f64, torque: TorqueModel| {
+            // energy changes by the slope, momentum by half of it
+            let times: Vec<f64> = (0..21).map(f64::from).collect();
+            let rate = |t: &f64| Vector3::new(0.6, -0.4, 0.5) * (1.0 + slope * (t - 10.0)).sqrt();
+            let stretches = [Stretch::new(times.clone(), times.iter().map(rate).collect())];
+            let (stretches, settings) = (&stretches[..], &Settings::default().with_torque(torque));
+            let case = Case { stretches, settings, variance: 1e-8, rms: 4.0, is_sized: false };
+            match case.unsettled(&weak, Some(2.5)) {
+                FitError::Unsettled { rounds, noise, factor, fall, mirror, .. } => {
+                    assert!((noise - 4e-4).abs() < 1e-15 && rounds == ROUNDS);
+                    assert!(factor == Some(2.5) && mirror.is_none());
+                    fall
+                }
+                other => panic!("{other}"),
+            }
+        };
+        let fall = of(-0.02, TorqueModel::None).unwrap();
+        assert!((fall - 0.04).abs() < 1e-10, "{fall}");
+        assert_eq!(of(0.02, TorqueModel::None), None);
+        assert_eq!(of(-0.02, TorqueModel::Auto), None);
+        // within the noise
+        assert_eq!(of(-1e-8, TorqueModel::None), None);
     }
 }
