@@ -16,11 +16,11 @@ use crate::physical::coordinates::{Coordinates, Form, basis, coordinates, eigen,
 use crate::report::answer::{Answer, ratios_of, sigmas};
 use crate::report::attitudes::AttitudeFit;
 use crate::report::estimate::{Estimate, Method, Residuals};
-use crate::report::exact::identify;
+use crate::report::exact::{absolute, identify};
 use crate::report::identifiability::{Identifiability, Undetermined};
 use crate::report::next_step::{Contradiction, NextStep, Origin};
 use crate::report::nuisance::Systematic;
-use crate::report::parts::{Halves, Scatter, instead, rows_between};
+use crate::report::parts::{Halves, Scatter, instead, quantile, rows_between};
 use crate::report::sensor::{Refuted, Suspect};
 use crate::report::torque_free::{InvariantTrend, Memory, Whiteness, memory, trends};
 use crate::report::warning::Warning;
@@ -29,11 +29,13 @@ use crate::report::warnings::{
     warnings,
 };
 use crate::settings::Settings;
+use crate::settings::known::Known;
 use crate::settings::torque::{TorqueModel, TorqueNoise};
 use crate::signal::normalised::{Normalised, normalised};
 use crate::signal::stretch::Stretch;
 use crate::simulate::{Disturbances, Gyroscope, simulate_with};
 use crate::solve::weak_estimate::WeakEstimate;
+use crate::thresholds::noise::SURE;
 use crate::thresholds::poses::DOUBTFUL;
 use crate::thresholds::warnings::{APART, AS_WELL, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, UNEXPLAINED};
 use crate::units::Others;
@@ -749,4 +751,39 @@ fn parts_of_a_record_are_all_of_its_equations() {
     }
     assert!(joined == all);
     assert!(rows_between(&weak, [0.5, 0.5]).concat().is_empty());
+}
+
+/// The energy of a segment is known as the slope of a straight line through its turns, with the variance 12 σ²/T² of a rate: two energies that are
+/// a hundredth apart contradict each other where half the square of that is more than chance brings. Under torques at random they may differ.
+#[test]
+fn energies_of_attitudes_differ_beyond_their_slopes() {
+    let (j, rate, more, count, lasts) = (body(), Vector3::new(0.3, -0.8, 0.5), 1.01_f64, 21, 5.0);
+    let of = |segment: usize, rate: Vector3<f64>| {
+        let times = (0..count).map(|k| lasts * k as f64 / (count - 1) as f64).collect();
+        Stretch { segment, ..Stretch::new(times, vec![rate; count]) }
+    };
+    let faster = rate * more.sqrt();
+    let rates = [of(0, rate), of(1, faster)];
+    let settings = Settings::default().with_known(Known::TwiceEnergy(3.0));
+    let found = |attitude: Option<f64>| {
+        let (covariance, x) = (Form::zeros(), coordinates(&j));
+        absolute(&settings, (&rates, 0.0, attitude), 2.0, TorqueModel::None, &j, &covariance, &x)
+    };
+    // of ω·J ω the variance is 4 s |J ω|² over the number of samples, where that of a rate is s
+    let apart = (more - 1.0) * rate.dot(&(j * rate));
+    let each = 4.0 * ((j * rate).norm_squared() + (j * faster).norm_squared()) / count as f64;
+    let most = 0.5 * apart * apart / (each * quantile(1.0, SURE));
+    let attitude = |variance: f64| Some(lasts * (variance / 12.0).sqrt());
+    match found(attitude(0.98 * most)) {
+        Err(FitError::SizeDiffers { factor, largest: 1, smallest: 0, .. }) => {
+            assert!((factor - more).abs() < 1e-12, "{factor}");
+        }
+        other => panic!("{other:?}"),
+    }
+    for attitude in [attitude(1.02 * most), None] {
+        let (inertia, covariance) = found(attitude).unwrap();
+        // the trace is what is known over the mean of both in units of 2 rad/s
+        let trace = 3.0 / 4.0 / (rate.dot(&(j * rate)) * 0.5 * (1.0 + more));
+        assert!((inertia.unwrap().tensor() - j * trace).amax() < 1e-12 * trace && covariance.is_some());
+    }
 }
