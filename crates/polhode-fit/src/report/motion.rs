@@ -345,7 +345,7 @@ mod tests {
         let times = [0.0, 0.4, 1.0, 1.3];
         let shares = [0.1, 0.3, -0.2, 0.4];
         let inputs = Inputs { wheel: shares.map(|share| HERE * share).to_vec(), ..none() };
-        let measured = vec![HERE; 4];
+        let measured = [HERE; 4];
         let used = [true, true, false, true];
         let (rates, normal, gradient, sum) = law.shoot(&times, &measured, &used, &inputs, HERE);
         let mut squares = 0.0;

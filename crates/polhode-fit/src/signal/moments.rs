@@ -329,7 +329,7 @@ mod tests {
     #[test]
     fn a_group_has_the_means_of_its_samples() {
         let s = stretch();
-        let mut noise = vec![Vector3::zeros(); 7];
+        let mut noise = [Vector3::zeros(); 7];
         (noise[4], noise[5]) = (Vector3::new(0.0, 0.0, 1.0), Vector3::new(0.0, 2.0, 1.0));
         let own = group(&s, &noise, 4..6);
         assert!((own.time - 0.305).abs() < 1e-15);
