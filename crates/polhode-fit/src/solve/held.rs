@@ -104,3 +104,51 @@ fn at(
     }
     best
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::columns::drag::Drag;
+    use crate::physical::coordinates::coordinates;
+    use crate::signal::normalised::{Normalised, normalised};
+    use crate::simulate::{Disturbances, Gyroscope, simulate_with};
+    use polhode::inertia::Inertia;
+    use polhode::num::Random;
+    use polhode::record::Record;
+
+    /// A record of a known body tells its drag within five deviations, with residuals of its noise; without a radius at the one of the smallest
+    /// deviation. Torque noise that is given stays.
+    #[test]
+    fn the_drag_of_a_known_body_is_told() {
+        let (body, drag, sigma) = (Inertia::from_moments([1.0, 2.0, 2.6]).unwrap(), 0.01, 2e-3);
+        let times: Vec<f64> = (0..800).map(|k| 0.05 * f64::from(k)).collect();
+        let (by, with) =
+            (Disturbances::default().with_relative_drag(drag), Gyroscope::default().with_noise(sigma));
+        let start = Vector3::new(0.3, 0.9, 0.5);
+        let rates = simulate_with(&body, start, &times, &by, &with, &mut Random::new(6)).unwrap();
+        let Normalised { stretches, rms, .. } =
+            normalised(&Record::from_samples(&times, &rates).unwrap()).unwrap();
+        let (x, variance) = (coordinates(&(body.tensor() / 5.6)), (sigma / rms) * (sigma / rms));
+        let columns = [Column::new(Drag, None)];
+        let of = |noise, radius| held(&stretches, x, &columns, variance, noise, radius).unwrap();
+        let spread = |held: &Held| held.sigmas[0] * held.misfit.max(1.0).sqrt();
+        let best = of(Noise::White, None);
+        let radii = candidates(&stretches);
+        assert!(radii.contains(&best.radius), "{}", best.radius);
+        for radius in radii {
+            let found = of(Noise::White, Some(radius));
+            let (value, deviation) = (found.values[0] * rms, found.sigmas[0] * rms);
+            assert!((value - drag).abs() < 5.0 * deviation && deviation < 0.1 * drag, "{value} {deviation}");
+            let chance = 5.0 * (2.0 / found.dof as f64).sqrt();
+            assert!((found.misfit - 1.0).abs() < chance, "{radius}: {} of {}", found.misfit, found.dof);
+            assert!(spread(&found) >= spread(&best) && found.radius == radius);
+            assert_eq!(found.levels, [(0, Levels::WHITE)]);
+            // of three equations for each test function one tells the drag
+            let tests = TestFunctions::new(&stretches[0], radius).unwrap();
+            assert_eq!(found.dof, 3 * tests.count - 1);
+        }
+        let given = of(Noise::Given(0.3), Some(best.radius));
+        assert_eq!(given.levels, [(0, Levels { torque: 0.3, ..Levels::WHITE })]);
+        assert!(given.misfit < best.misfit && given.sigmas[0] > best.sigmas[0]);
+    }
+}
