@@ -466,8 +466,7 @@ mod tests {
         let of = |failure, settings| without_estimate(failure, &record, settings, &stretches, UNIT);
         let FitError::Radius { radius, longest, needed } = of(Failure::TooShort, &given) else { panic!() };
         assert!((radius, needed) == (5.0, 8) && (longest - 4.0).abs() < 1e-12, "{longest}");
-        let few =
-            FitError::TooFewSamples { samples: 41, segments: 1, longest: 41, saturated: 0, needed: 16 };
+        let few = FitError::TooFewSamples { samples: 41, segments: 1, longest: 41, saturated: 0, needed: 16 };
         assert_eq!(of(Failure::TooShort, &plain), few);
         let singular = FitError::Solver(SolverFailure::Covariance);
         assert_eq!(of(Failure::Dense, &given), FitError::Dense { radius: 5.0 });

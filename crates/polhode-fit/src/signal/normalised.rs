@@ -150,8 +150,7 @@ mod tests {
             let times = (0..count).map(|k| k as f64).collect();
             Segment::new("short", times, vec![Vector3::z(); count]).unwrap()
         };
-        let few =
-            FitError::TooFewSamples { samples: 29, segments: 2, longest: 15, saturated: 0, needed: 16 };
+        let few = FitError::TooFewSamples { samples: 29, segments: 2, longest: 15, saturated: 0, needed: 16 };
         assert_eq!(refused([short(15), short(14)]), few);
         assert!(normalised(&record([short(16), short(3)])).is_ok());
         let still = [0.0, 3.0].map(|from| segment("still", from, Vector3::zeros()));
