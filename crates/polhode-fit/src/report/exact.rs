@@ -116,15 +116,8 @@ pub(crate) fn report(
     let Levels { attitude, rate } = information.levels;
     let (attitude, rate) = if has_attitudes { (attitude, 0.0) } else { (0.0, rate) };
     let (j, both) = (shape.tensor(), on_face * on_face.transpose());
-    let scale = |known: Known, stretches: &[Stretch], of: Of| {
-        // of a segment as much as a straight line through the turns leaves open of its slope
-        let slope = match of {
-            Of::All => 0.0,
-            Of::Segment => attitude / stretches.iter().map(Stretch::duration).sum::<f64>(),
-        };
-        let variance = rate * rate + 12.0 * slope * slope;
-        scale_of(known, stretches, free.read.unit, &j, Noise { variance, is_in_rates: false })
-    };
+    let scale =
+        |known: Known, path: &[Stretch], of: Of| size(known, path, of, free.read.unit, &j, (attitude, rate));
     let (inertia, inertia_covariance) =
         absolute(settings, &rates, model_of(free.torque), &j, &both, &answer.x, scale)?;
     let residuals = residuals(free, information.levels)?;
@@ -315,6 +308,24 @@ fn fitted_rates(free: &Free) -> Vec<Stretch> {
         Stretch { segment, ..Stretch::new(track.times.clone(), rates) }
     });
     each.collect()
+}
+
+/// The size by the rates of a motion, in this unit, that was fitted to attitudes or rates whose noise has these deviations; that of a segment has
+/// besides what a straight line through the turns leaves open of its slope.
+pub(super) fn size(
+    known: Known,
+    path: &[Stretch],
+    of: Of,
+    unit: f64,
+    j: &Matrix3<f64>,
+    (attitude, rate): (f64, f64),
+) -> Scale {
+    let slope = match of {
+        Of::All => 0.0,
+        Of::Segment => attitude / path.iter().map(Stretch::duration).sum::<f64>(),
+    };
+    let variance = rate * rate + 12.0 * slope * slope;
+    scale_of(known, path, unit, j, Noise { variance, is_in_rates: false })
 }
 
 /// The absolute tensor by the rates of a fitted motion, where something gives its size, and its covariance; `torque` was fitted. `scale` is the

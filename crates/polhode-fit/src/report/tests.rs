@@ -16,7 +16,7 @@ use crate::physical::coordinates::{Coordinates, Form, basis, coordinates, eigen,
 use crate::report::answer::{Answer, ratios_of, sigmas};
 use crate::report::attitudes::AttitudeFit;
 use crate::report::estimate::{Estimate, Method, Residuals};
-use crate::report::exact::{absolute, identify};
+use crate::report::exact::{Of, absolute, identify, size};
 use crate::report::identifiability::{Identifiability, Undetermined};
 use crate::report::next_step::{Contradiction, NextStep, Origin};
 use crate::report::nuisance::Systematic;
@@ -765,25 +765,25 @@ fn energies_of_attitudes_differ_beyond_their_slopes() {
     let faster = rate * more.sqrt();
     let rates = [of(0, rate), of(1, faster)];
     let settings = Settings::default().with_known(Known::TwiceEnergy(3.0));
-    let found = |attitude: Option<f64>| {
+    let found = |attitude: f64| {
         let (covariance, x) = (Form::zeros(), coordinates(&j));
-        absolute(&settings, (&rates, 0.0, attitude), 2.0, TorqueModel::None, &j, &covariance, &x)
+        let scale =
+            |known: Known, path: &[Stretch], of: Of| size(known, path, of, 2.0, &j, (attitude, 0.0));
+        absolute(&settings, &rates, TorqueModel::None, &j, &covariance, &x, scale)
     };
     // of ω·J ω the variance is 4 s |J ω|² over the number of samples, where that of a rate is s
     let apart = (more - 1.0) * rate.dot(&(j * rate));
     let each = 4.0 * ((j * rate).norm_squared() + (j * faster).norm_squared()) / count as f64;
     let most = 0.5 * apart * apart / (each * quantile(1.0, SURE));
-    let attitude = |variance: f64| Some(lasts * (variance / 12.0).sqrt());
+    let attitude = |variance: f64| lasts * (variance / 12.0).sqrt();
     match found(attitude(0.98 * most)) {
         Err(FitError::SizeDiffers { factor, largest: 1, smallest: 0, .. }) => {
             assert!((factor - more).abs() < 1e-12, "{factor}");
         }
         other => panic!("{other:?}"),
     }
-    for attitude in [attitude(1.02 * most), None] {
-        let (inertia, covariance) = found(attitude).unwrap();
-        // the trace is what is known over the mean of both in units of 2 rad/s
-        let trace = 3.0 / 4.0 / (rate.dot(&(j * rate)) * 0.5 * (1.0 + more));
-        assert!((inertia.unwrap().tensor() - j * trace).amax() < 1e-12 * trace && covariance.is_some());
-    }
+    let (inertia, covariance) = found(attitude(1.02 * most)).unwrap();
+    // the trace is what is known over the mean of both in units of 2 rad/s
+    let trace = 3.0 / 4.0 / (rate.dot(&(j * rate)) * 0.5 * (1.0 + more));
+    assert!((inertia.unwrap().tensor() - j * trace).amax() < 1e-12 * trace && covariance.is_some());
 }

@@ -137,12 +137,11 @@ impl<'a> Rounds<'a> {
     /// From where others of the same stretches have ended; `None` where they had not all of these. Columns that those had not
     /// are zero.
     pub(crate) fn resumed(mut self, mut from: Reached) -> Option<Self> {
+        // those beyond a part of the record are like the first of it
+        let first = from.stretches.first().filter(|first| first.noise.is_none()).map(|first| first.levels);
         for ((k, stretch, _), (levels, noise)) in
             self.used.iter().zip(self.levels.iter_mut().zip(&mut self.noise))
         {
-            // those beyond a part of the record are like the first of it
-            let first =
-                from.stretches.first().filter(|first| first.noise.is_none()).map(|first| first.levels);
             let Some(own) = from.stretches.iter_mut().find(|own| own.stretch == *k) else {
                 *levels = first?;
                 continue;
@@ -541,7 +540,9 @@ mod tests {
         assert_eq!((found.at.x, found.at.c), (x, vec![0.1, 0.3]));
         assert!(found.resumed && found.driven);
         assert_eq!(resumed(vec![by(0, None)]).unwrap().levels, [level(1.0), level(1.0)]);
-        assert!(resumed(vec![by(1, Some(100))]).is_none());
+        for lacking in [0, 1] {
+            assert!(resumed(vec![by(lacking, Some(100))]).is_none());
+        }
         assert!(resumed(vec![by(0, Some(100)), by(1, Some(99))]).is_none());
     }
 }
