@@ -41,7 +41,7 @@ impl Reading {
                 }
             }
         };
-        let unit = direct * (1.0 / direct.norm_squared().sqrt());
+        let unit = normalized(direct);
         Some(if self.attitude == Some(Direction::SpaceToBody) { unit.conjugate() } else { unit })
     }
 
@@ -75,6 +75,17 @@ impl Reading {
     }
 }
 
+/// The quaternion of norm 1 along `q`, whose square a double need not hold: a quaternion of zeros would agree with every attitude.
+fn normalized(q: Quat<f64>) -> Quat<f64> {
+    let square = q.norm_squared();
+    if square.is_normal() {
+        return q * (1.0 / square.sqrt());
+    }
+    let largest = q.components().iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    let scaled = Quat::from_components(q.components().map(|x| x / largest));
+    scaled * (1.0 / scaled.norm_squared().sqrt())
+}
+
 /// The rotation nearest to a matrix, row by row, to first order in its distance from one; of any norm.
 fn of_matrix(m: &[f64; 9]) -> Quat<f64> {
     let r = |i: usize, j: usize| m[3 * i + j];
@@ -102,6 +113,22 @@ fn of_matrix(m: &[f64; 9]) -> Quat<f64> {
 mod tests {
     use super::*;
     use crate::rotation::rotation_angle;
+
+    /// Also where the square of its norm is below the doubles or above them.
+    #[test]
+    fn an_attitude_of_any_size_has_norm_one() {
+        let attitude = |attitudes: Attitudes| {
+            let record = Trajectory::new(vec![0.0]).with_attitude(attitudes);
+            Reading::default().attitude(&record, 0).unwrap().components()
+        };
+        for size in [1e-300, 1e-160, 1.0, 1e160, 1e300] {
+            let found = attitude(Attitudes::Quaternions(vec![[0.6 * size, 0.0, 0.8 * size, 0.0]]));
+            let off = found.iter().zip([0.6_f64, 0.0, 0.8, 0.0]).map(|(x, right)| (x - right).abs());
+            assert!(off.fold(0.0, f64::max) < 1e-15, "{size:e}: {found:?}");
+        }
+        // tan(φ/4) of nearly a whole turn
+        assert_eq!(attitude(Attitudes::Rodrigues(vec![[1e100, 0.0, 0.0]]))[0], -1.0);
+    }
 
     #[test]
     fn a_matrix_and_its_quaternion_rotate_alike() {
