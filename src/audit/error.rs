@@ -80,6 +80,14 @@ pub enum AuditError {
         /// What is allowed at most.
         most: f64,
     },
+    /// Noise that is declared of what the record does not hold.
+    #[error("the noise of the {quantity} is declared to be {}, and the record has no {quantity}; declare 0", Shown(*value))]
+    NoiseOfNothing {
+        /// Of which column.
+        quantity: &'static str,
+        /// What was given.
+        value: f64,
+    },
     /// Angular momentum alone, which tells nothing without a body.
     #[error("a record of angular momenta needs the body, whose moments turn them into angular velocities")]
     MomentumNeedsBody,

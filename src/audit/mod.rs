@@ -52,8 +52,8 @@ pub use verdict::{
 /// The verdict on `record`.
 ///
 /// # Errors
-/// Too few rows, times that do not ascend, numbers that are not finite, columns of different lengths, or a body that is needed
-/// and not given.
+/// Too few rows, times that do not ascend, numbers that are not finite, columns of different lengths, noise that is declared of
+/// what the record does not hold, or a body that is needed and not given.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};

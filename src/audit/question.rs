@@ -33,12 +33,13 @@ pub struct Question {
     pub claims: Convention,
 }
 
-/// Standard deviations of a component that a record is declared to have.
+/// Standard deviations of a component that a record is declared to have; 0 of what it does not hold.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Noise {
     /// Of the attitude, rad.
     pub attitude: f64,
-    /// Of the angular velocity, rad/s; where it is more than a tenth of the angular velocity, nothing is decided.
+    /// Of the angular velocity, rad/s, or of that which follows from an angular momentum; where it is more than a tenth of the
+    /// angular velocity, nothing is decided.
     pub rates: f64,
 }
 
@@ -125,6 +126,14 @@ impl Question {
         }
         if !(rates >= 0.0 && rates.is_finite()) {
             return Err(AuditError::Noise { quantity: "angular velocity", value: rates, most: f64::MAX });
+        }
+        let has_rates = record.rates.is_some() || record.momentum.is_some();
+        for (quantity, value, is_there) in
+            [("attitude", attitude, record.attitude.is_some()), ("angular velocity", rates, has_rates)]
+        {
+            if value > 0.0 && !is_there {
+                return Err(AuditError::NoiseOfNothing { quantity, value });
+            }
         }
         Ok(())
     }

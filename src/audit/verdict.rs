@@ -245,7 +245,7 @@ pub struct Verdict {
     /// What noise and digits leave open.
     pub resolution: Resolution,
     /// The noise within which an undecided record agrees with the motion, where it is noise that leaves it open; it was not
-    /// declared, or declared smaller.
+    /// declared, or declared smaller. 0 of what the record does not hold.
     pub noise: Option<Noise>,
     /// What the motion keeps, and how well the record does.
     pub conservation: Vec<Conservation>,

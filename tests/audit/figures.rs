@@ -161,6 +161,11 @@ fn noise_is_measured_in_both_columns() {
         near(resolution.attitude.unwrap(), noise, 0.15);
         near(resolution.rates.unwrap(), 3.0 * noise / size, 0.15);
         assert_eq!((resolution.digits, resolution.single_precision), (17, false));
+        // of a column that is not there it is none
+        let mut alone = plain(&rows, Writing::EXACT);
+        alone.rates = None;
+        let told = audit(&alone, &Question::new(Some(body()))).unwrap().noise;
+        assert_eq!(told.map(|noise| noise.rates), Some(0.0));
         // what the noise explains of the momentum is more than it does, and not much more
         for kept in &verdict.conservation {
             assert!(kept.conserved && kept.resolution < 10.0 * kept.error, "{kept:?}");

@@ -243,6 +243,20 @@ fn what_cannot_be_audited_is_refused_with_the_numbers() {
         question.tolerance = value;
         assert_eq!(audit(&file, &question).unwrap_err(), AuditError::Tolerance { value, most: 0.1 });
     }
+    // nor is noise declared of a column that is not there
+    let (mut rates, mut attitudes) = (file.clone(), file.clone());
+    (rates.attitude, attitudes.rates) = (None, None);
+    for (record, noise, quantity, value) in [
+        (rates, Noise { attitude: 1e-3, rates: 0.01 }, "attitude", 1e-3),
+        (attitudes, Noise { attitude: 1e-3, rates: 0.01 }, "angular velocity", 0.01),
+    ] {
+        let mut question = Question::new(Some(body.clone()));
+        question.noise = noise;
+        let error = audit(&record, &question).unwrap_err();
+        assert_eq!(error, AuditError::NoiseOfNothing { quantity, value });
+        let says = format!("declared to be {value}, and the record has no {quantity}; declare 0");
+        assert!(error.to_string().ends_with(&says), "{error}");
+    }
 }
 
 /// What an exact motion does with the flips of the record, and what a run leaves: the integrator by its name and step.

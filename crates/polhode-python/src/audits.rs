@@ -103,8 +103,8 @@ impl Verdict {
 /// `"space-to-body"`), `omega_frame` and `momentum_frame` (`"body"`, `"space"`), `rate_unit`, `euler` (as `"zyx"`, or
 /// `"zyx:extrinsic"`) and `angle_unit`, and the rows contradict, makes the record wrong. `any_order`: the moments may belong to the axes
 /// in any order. `tolerance`: largest error of a record that is right, rad and relative; `noise`: standard deviations that the record
-/// has, rad, or a pair of rad and rad/s. `advice`: whether a record that is wrong by its integrator gets a method that would do, which
-/// takes two seconds at most.
+/// has, rad, or a pair of rad and rad/s, each 0 where the record has no such columns. `advice`: whether a record that is wrong by its
+/// integrator gets a method that would do, which takes two seconds at most.
 ///
 /// >>> import numpy, polhode
 /// >>> t = numpy.arange(400) * 0.05
@@ -198,6 +198,9 @@ pub(crate) fn verdict_on(
             Some(Angles { sequence, turns, unit: claims.angle_unit.unwrap_or(AngleUnit::Radians) });
     }
     if any_order {
+        if body.as_ref().is_none_or(|body| !body.body.wheels().is_empty()) {
+            return Err(refused("any_order: needs the moments of a body without wheels"));
+        }
         claims.moments = None;
     }
     let noise = match Numbers::maybe("noise", noise)? {

@@ -52,6 +52,11 @@ def test_a_noisy_record_is_undecided_until_its_noise_is_declared(exact):
     undecided = polhode.audit(T, exact.attitude, exact.omega + noise, moments=[1, 2, 3])
     assert undecided.verdict == "undecided"
     assert polhode.audit(T, exact.attitude, exact.omega + noise, moments=[1, 2, 3], noise=[0, 1.1e-3]).is_right
+    # what is said of columns or moments that are not there
+    with pytest.raises(PolhodeError, match="has no angular velocity"):
+        polhode.audit(T, exact.attitude, moments=[1, 2, 3], noise=[0, 1.1e-3])
+    with pytest.raises(PolhodeError, match="any_order: needs the moments"):
+        polhode.audit(T, exact.attitude, exact.omega, any_order=True)
 
 
 def test_a_wrong_integrator_is_named_with_what_to_switch_to():

@@ -104,9 +104,9 @@ pub(super) fn judged(specimen: &Specimen, style: Style, random: &mut Random) -> 
     let record = record(specimen, &noisy, &reading, style, random);
     let mut question = Question::new(Some(body));
     question.tolerance = TOLERANCE;
-    let rates = if style.columns == Columns::Attitude { 0.0 } else { style.noise * size };
-    question.noise = Noise { attitude: style.noise, rates };
-    if rates > 0.0 {
+    let unless = |columns: Columns| if style.columns == columns { 0.0 } else { style.noise };
+    question.noise = Noise { attitude: unless(Columns::Rates), rates: unless(Columns::Attitude) * size };
+    if question.noise.rates > 0.0 {
         // who declares a noise in rad/s knows the unit, which the motion of a sphere does not tell
         question.claims.rate_unit = reading.rate_unit;
     }
