@@ -227,10 +227,14 @@ fn claims(table: &Table) -> Result<Convention, TableError> {
         }
         claims.attitude = claims.attitude.or(attitude.direction);
     }
+    check_alike(table)?;
     check_units(table)?;
-    claims.omega_frame = body.rates.as_ref().and_then(|rates| rates.frame);
-    claims.rate_unit = table.rate_units(0)[0].filter(|_| body.rates.is_some());
-    claims.momentum_frame = body.momentum.as_ref().and_then(|momentum| momentum.frame);
+    let bodies = &table.header.bodies;
+    if let Some(with_rates) = bodies.iter().position(|body| body.rates.is_some()) {
+        claims.omega_frame = bodies[with_rates].rates.as_ref().and_then(|rates| rates.frame);
+        claims.rate_unit = table.rate_units(with_rates)[0];
+    }
+    claims.momentum_frame = bodies.iter().find_map(|body| body.momentum.as_ref()?.frame);
     if table.is_dump() {
         // momenta and rates of atoms are in the axes of space
         (claims.omega_frame, claims.momentum_frame) = (Some(Frame::Space), Some(Frame::Space));
@@ -239,6 +243,26 @@ fn claims(table: &Table) -> Result<Convention, TableError> {
         claims.attitude = Some(Direction::BodyToSpace);
     }
     Ok(claims)
+}
+
+/// The names of all bodies claim one convention.
+fn check_alike(table: &Table) -> Result<(), TableError> {
+    let groups: [fn(&Columns) -> Option<&Group>; 3] =
+        [|body| body.attitude.as_ref(), |body| body.rates.as_ref(), |body| body.momentum.as_ref()];
+    // those of rates are looked at apart
+    let units = |group: &Group| (group.quantity == Quantity::Angles).then(|| group.units.clone());
+    let claimed =
+        |group: &Group| (group.quantity, group.direction, group.frame, group.angle_axes, units(group));
+    for of in groups {
+        let mut all = table.header.bodies.iter().filter_map(of);
+        let Some(first) = all.next().map(claimed) else { continue };
+        if let Some(other) = all.find(|&group| claimed(group) != first) {
+            let rule = Rule::Other("its name claims another convention than that of the first body".into());
+            let error = table.refused_column(other.places[0], rule);
+            return Err(error.with_remedy("write all bodies in one convention, or each in a file of its own"));
+        }
+    }
+    Ok(())
 }
 
 /// The angular velocities of all bodies are in one unit, as their numbers are taken as they stand, and momenta in none or in one that is

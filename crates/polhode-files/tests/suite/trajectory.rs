@@ -69,6 +69,26 @@ fn dumps_and_ids_part_the_bodies() {
     assert_eq!(found.claims.attitude, Some(Direction::BodyToSpace));
 }
 
+/// What the names of one body claim is claimed of all.
+#[test]
+fn bodies_of_one_file_claim_one_convention() {
+    let quaternion = |body: &str| ["w", "x", "y", "z"].map(|part| format!("{body}_q{part}")).join(",");
+    let rates =
+        |body: &str, frame: &str| ["x", "y", "z"].map(|axis| format!("{body}_w{axis}_{frame}")).join(",");
+    let (one, two) = (quaternion("box1"), quaternion("box2"));
+    let both = |frames: [&str; 2]| {
+        let [first, second] = [rates("box1", frames[0]), rates("box2", frames[1])];
+        found(&format!("t,{one},{first},{two},{second}\n0,1,0,0,0,0,0,1,1,0,0,0,0,0,1\n"), "")
+    };
+    let error = both(["body", "space"]).unwrap_err();
+    assert!(error.contains("box2_wx_space") && error.contains("another convention"), "{error}");
+    assert_eq!(both(["space"; 2]).unwrap().claims.omega_frame, Some(Frame::Space));
+    // also where the first has no such columns
+    let of_second = rates("box2", "space");
+    let found = found(&format!("t,{one},{two},{of_second}\n0,1,0,0,0,1,0,0,0,0,0,1\n"), "").unwrap();
+    assert_eq!(found.claims.omega_frame, Some(Frame::Space));
+}
+
 #[test]
 fn what_cannot_be_read_is_refused_with_line_and_column() {
     for (text, columns, says) in [
