@@ -15,6 +15,7 @@ mod methods;
 mod motion;
 mod plot;
 mod propagate;
+mod reference;
 mod short_help;
 mod show;
 mod simulate;

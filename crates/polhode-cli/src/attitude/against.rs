@@ -3,14 +3,14 @@
 use std::path::Path;
 
 use nalgebra::UnitQuaternion;
-use polhode::audit::{Attitudes, Direction, Reading, Trajectory};
+use polhode::audit::{Reading, Trajectory};
 use polhode::strapdown::Estimate;
 use polhode_files::ReadOptions;
 use polhode_files::error::{Error, tell, warn};
 use polhode_files::text::{rounded, visible};
 use polhode_files::trajectory::read;
 
-use crate::flags::attitude::check_matrices;
+use crate::reference::attitudes;
 
 /// Times agree within this share of the mean interval of the reference.
 const SAME_TIME: f64 = 1e-6;
@@ -34,44 +34,8 @@ impl Reference {
     pub(super) fn read(path: &Path) -> Result<Self, Error> {
         let found = read(path, &ReadOptions::default())?;
         let name = visible(&path.display().to_string()).into_owned();
-        if found.counts_steps {
-            let rule = "counts steps of a length that it does not tell";
-            return Err(Error::input("--against", &name, rule, "write its times in s"));
-        }
-        if !found.second_attitude.is_empty() {
-            let second = found.second_attitude.join(", ");
-            let rule = format!("the columns {second} hold another attitude, which is not read");
-            return Err(Error::input("--against", &name, &rule, "write a file with one attitude"));
-        }
-        let mut bodies = found.bodies;
-        let rows = match (bodies.len(), bodies.pop()) {
-            (1, Some((_, rows))) if rows.attitude.is_some() => rows,
-            _ => {
-                let rule = "is not the trajectory of one body with its attitude";
-                return Err(Error::input("--against", &name, rule, "name a file with t, q_w, q_x, q_y, q_z"));
-            }
-        };
-        let open = match (&rows.attitude, found.claims.quaternion) {
-            (Some(Attitudes::Quaternions(_)), None) => {
-                Some("its quaternions do not say where the scalar stands")
-            }
-            (Some(Attitudes::Angles(_)), _) => Some("its Euler angles do not say their sequence"),
-            _ => None,
-        };
-        if let Some(rule) = open {
-            return Err(Error::input(
-                "--against",
-                &name,
-                rule,
-                "write its attitudes in columns q_w, q_x, q_y, q_z",
-            ));
-        }
-        if let Some(Attitudes::Matrices(matrices)) = &rows.attitude {
-            check_matrices(matrices, &rows.times, &name)?;
-        }
-        let mut reading = Reading::default();
-        reading.quaternion = found.claims.quaternion;
-        reading.attitude = Some(found.claims.attitude.unwrap_or(Direction::BodyToSpace));
+        let refused = |rule: &str, remedy: &str| Error::input("--against", &name, rule, remedy);
+        let (rows, reading) = attitudes(found, &name, refused)?;
         Ok(Self {
             name,
             rows,

@@ -3,16 +3,18 @@
 use std::path::Path;
 
 use nalgebra::Vector3;
-use polhode::audit::{Direction, Reading, Trajectory, Verdict};
+use polhode::audit::{Reading, Trajectory, Verdict};
 use polhode::body::Body;
 use polhode::inertia::Inertia;
 use polhode::rotation::rotation_angle;
-use polhode_files::ReadOptions;
 use polhode_files::error::Error;
 use polhode_files::numbers::numbers;
-use polhode_files::text::visible;
+use polhode_files::text::{rounded, visible};
 use polhode_files::trajectory::read;
+use polhode_files::{NamedBy, ReadOptions};
 use polhode_pages::verdict::Difference;
+
+use crate::reference::attitudes;
 
 /// A trajectory that is right, with its body.
 pub(super) struct Golden {
@@ -20,6 +22,8 @@ pub(super) struct Golden {
     rows: Trajectory,
     reading: Reading,
     pub(super) body: Body,
+    /// What of its file is not read, in words.
+    pub(super) remark: Option<String>,
 }
 
 /// Times agree within this share of the interval of the golden trajectory.
@@ -36,9 +40,6 @@ impl Golden {
         let refused = |value: &str, rule: &str| {
             Error::input(&name, value, rule, "write golden trajectories by `polhode audit --golden DIR`")
         };
-        if found.counts_steps {
-            return Err(refused("", "counts steps of a length that it does not tell"));
-        }
         let line = |key: &str| -> Result<Option<[f64; 3]>, Error> {
             let text =
                 found.comments.iter().find_map(|line| line.strip_prefix(key)?.trim().strip_prefix(':'));
@@ -55,16 +56,17 @@ impl Golden {
                 .map_err(|error| refused("# weight-moment", &error.to_string()))?,
             _ => Body::free(inertia),
         };
-        let claims = found.claims;
-        let mut bodies = found.bodies;
-        let rows = match (bodies.len(), bodies.pop()) {
-            (1, Some((_, rows))) if rows.attitude.is_some() && rows.times.len() > 1 => rows,
-            _ => return Err(refused("", "is not the trajectory of one body with its attitude")),
-        };
-        let mut reading = Reading::default();
-        reading.quaternion = claims.quaternion;
-        reading.attitude = Some(claims.attitude.unwrap_or(Direction::BodyToSpace));
-        Ok(Self { name, rows, reading, body })
+        let (times, named_by) = &found.read_as.times;
+        if *named_by == NamedBy::Values || times == "s and ns" {
+            let rule = format!("its times are {times}, of which the time since the first row is read");
+            return Err(refused("", &rule));
+        }
+        let remark = found.remark().map(|remark| format!("{name}: {remark}"));
+        let (rows, reading) = attitudes(found, &name, |rule, _| refused("", rule))?;
+        if rows.times.len() < 2 {
+            return Err(refused("", "has one row"));
+        }
+        Ok(Self { name, rows, reading, body, remark })
     }
 
     /// The distance of `record`, read as the verdict has it.
@@ -79,7 +81,10 @@ impl Golden {
         let interval = (golden[golden.len() - 1] - golden[0]) / (golden.len() - 1) as f64;
         let allowed = tolerance.max(SIGMAS * verdict.resolution.attitude.unwrap_or(0.0));
         let (name, of) = (self.name.clone(), golden.len());
-        let mut found = Difference { name, rows: 0, of, largest: 0.0, at: golden[0], tolerance: allowed };
+        let (largest, at, tolerance) = (0.0, golden[0], allowed);
+        let mut found = Difference { name, rows: 0, of, is_whole: false, largest, at, tolerance };
+        // one row of the record may be near to two rows
+        let (mut shared, mut last) = (0, None);
         for (row, &t) in golden.iter().enumerate() {
             let after = times.partition_point(|time| *time < t);
             let near = [after.checked_sub(1), Some(after)].into_iter().flatten();
@@ -99,11 +104,35 @@ impl Golden {
                 (found.largest, found.at) = (angle, t);
             }
             found.rows += 1;
+            shared += usize::from(last.replace(place) != Some(place));
         }
         if found.rows == 0 {
-            let rule = format!("no row at a time of {}, t = {}, {}, ...", self.name, golden[0], golden[1]);
-            return Err(Error::input(file, "", &rule, "write rows at these times"));
+            return Err(Error::input(file, "", &self.coverage(record, 0), "write rows at its times"));
         }
+        found.is_whole = found.rows == of || shared == times.len();
         Ok(found)
+    }
+
+    /// How much of both was compared, where it is not all of this trajectory.
+    pub(super) fn note(&self, record: &Trajectory, found: &Difference) -> Option<String> {
+        let open = if found.is_whole { "" } else { "; the verdict is open, as the others are not compared" };
+        (found.rows < found.of).then(|| self.coverage(record, found.rows) + open)
+    }
+
+    fn coverage(&self, record: &Trajectory, shared: usize) -> String {
+        let span = |times: &[f64]| {
+            let ends = times.first().zip(times.last());
+            ends.map_or(String::new(), |(first, last)| {
+                format!(" (t = {} to {} s)", rounded(*first), rounded(*last))
+            })
+        };
+        format!(
+            "{shared} of the {} rows of {}{} are at a time of one of the {} rows of the record{}",
+            self.rows.times.len(),
+            self.name,
+            span(&self.rows.times),
+            record.times.len(),
+            span(&record.times)
+        )
     }
 }

@@ -52,27 +52,39 @@ impl ReadingArguments {
         self.table.reading(self.rate_unit)
     }
 
-    /// Whether a flag names columns.
-    pub(super) fn names_columns(&self) -> bool {
-        self.table.names_columns()
+    /// Whether a flag names columns of a quantity.
+    pub(super) fn names_quantities(&self) -> bool {
+        self.table.names_quantities()
     }
 
-    /// Refuses a flag that says how columns are written that no body of the file has, and a unit of times that have theirs.
+    /// Refuses moments in any order where none are given, or where wheels stay on their axes.
+    pub(super) fn check_order(&self, has_body: bool, has_wheels: bool) -> Result<(), Error> {
+        let rule = match (has_body, has_wheels) {
+            (false, _) => "no moments are given that could belong to other axes",
+            (true, true) => "the wheels are along axes of the body, which stay where they are",
+            (true, false) => return Ok(()),
+        };
+        if self.any_order { Err(Error::input("--any-order", "", rule, "leave it out")) } else { Ok(()) }
+    }
+
+    /// Refuses a flag that says how columns are written that no body has, and a unit of times that have theirs.
     pub(super) fn check_used(&self, found: &FoundTrajectory) -> Result<(), Error> {
         self.table.check_times(&found.read_as)?;
         let has = |of: fn(&Trajectory) -> bool| found.bodies.iter().any(|(_, rows)| of(rows));
         let frame = |axes: Axes| String::from(if axes == Axes::Body { "body" } else { "space" });
         let of_momentum = self.momentum_frame.map(|axes| ("--momentum-frame", frame(axes)));
         let of_rates = self.omega_frame.map(|axes| ("--omega-frame", frame(axes)));
-        let of_rates = of_rates.or_else(|| self.rate_unit.map(|unit| ("--rate-unit", unit.to_string())));
+        let of_unit = self.rate_unit.map(|unit| ("--rate-unit", unit.to_string()));
         let has_quaternions = has(|rows| matches!(rows.attitude, Some(Attitudes::Quaternions(_))));
         let has_angles = has(|rows| matches!(rows.attitude, Some(Attitudes::Angles(_))));
+        let has_rates = has(|rows| rows.rates.is_some());
         for (flag, is_used, what) in [
             (self.attitude.given_of_order(), has_quaternions, "a quaternion"),
             (self.attitude.given_of_direction(), has(|rows| rows.attitude.is_some()), "an attitude"),
             (self.attitude.given_of_angles(), has_angles, "a triple of Euler angles"),
             (of_momentum, has(|rows| rows.momentum.is_some()), "an angular momentum"),
-            (of_rates, has(|rows| rows.rates.is_some()), "an angular velocity"),
+            (of_rates, has_rates, "an angular velocity"),
+            (of_unit, has_rates, "an angular velocity"),
         ] {
             check_used(flag, is_used, what)?;
         }

@@ -12,6 +12,7 @@ use polhode::body::Body;
 use polhode_files::error::{Error, warn};
 use polhode_files::numbers::{list, positive};
 use polhode_files::text::{short, visible};
+use polhode_files::trajectory::FoundTrajectory;
 use polhode_files::{NamedBy, trajectory};
 use polhode_pages::document::Form;
 use polhode_pages::output::Output;
@@ -48,7 +49,7 @@ const EXAMPLES: &str = "Examples:
 /// right: every row and every column is within --tolerance of a motion of the body, within what its own digits tell, or within
 /// the noise that --noise declares. A record that agrees within a noise that nobody declares is undecided. If the rows contradict
 /// a direction, a frame, a unit, the axes of roll, pitch and yaw, or the order of the moments that a name or an option states, the
-/// record is wrong.
+/// record is wrong. Beside a golden trajectory it is undecided unless every row of one of the two is at a time of the other.
 ///
 /// suspect: kinematics-sign, omega-frame, transposed, moments-order, degrees, angles-order, gyroscopic-term-missing,
 /// gyroscopic-sign, integrator:NAME, discontinuity, other-body, other-torque, other-wheel or none. If the integrator is to blame, a method and a
@@ -76,7 +77,7 @@ pub(crate) struct Audit {
     /// Largest error of a record that is right, rad and relative, at most 0.1
     #[arg(long, value_name = "E", value_parser = tolerance, allow_hyphen_values = true, default_value = "1e-6", help_heading = "Verdict")]
     tolerance: f64,
-    /// Noise that the record has, standard deviations of a component of the attitude, rad, and of the angular velocity, rad/s; a noisy record is undecided without it
+    /// Noise that the record has, standard deviations of a component of the attitude, rad, and of the angular velocity, rad/s, each 0 where the record has no such columns; a noisy record is undecided without it
     #[arg(long, value_name = "ANGLE[,RATE]", value_parser = noise, allow_hyphen_values = true, help_heading = "Verdict")]
     noise: Option<Noise>,
     /// Compare with this golden trajectory too, of whose body the record then is
@@ -180,59 +181,32 @@ impl Audit {
                 remedy,
             ));
         }
+        self.reading.check_order(body.is_some(), !wheels.is_empty())?;
         memory::check_files(&[path.to_path_buf()], 2)?;
         let mut found = trajectory::read(path, &self.reading.table())?;
+        self.choose(&mut found)?;
         self.reading.check_used(&found)?;
         self.reading.order(&mut found)?;
-        if !found.second_attitude.is_empty() && !self.reading.names_columns() {
+        if !found.second_attitude.is_empty() && !self.reading.names_quantities() {
             let rule = format!(
                 "the columns {} hold another attitude, which is not read",
                 found.second_attitude.join(", ")
             );
             return Err(Error::input(name, "", &rule, "name those of one body by --columns"));
         }
-        let mut remark = found.remark();
+        let of_golden = golden.as_ref().and_then(|golden| golden.remark.clone());
+        let mut remarks: Vec<String> = found.remark().into_iter().chain(of_golden).collect();
         let unit_is_open = !found.counts_steps && found.read_as.times.1 == NamedBy::Nothing;
         let claims = self.reading.claims(found.claims);
-        let bodies: Vec<(Option<String>, Trajectory)> = match &self.id {
-            None => {
-                // a body that is alone needs no name
-                let several = found.bodies.len() > 1;
-                found.bodies.into_iter().map(|(id, rows)| (id.filter(|_| several), rows)).collect()
-            }
-            Some(wanted) => {
-                let known: Vec<String> = found.bodies.iter().filter_map(|(id, _)| id.clone()).collect();
-                let chosen: Vec<_> =
-                    found.bodies.into_iter().filter(|(id, _)| id.as_ref() == Some(wanted)).collect();
-                if chosen.is_empty() && known.is_empty() {
-                    let rule = "no column names the bodies of the record";
-                    return Err(Error::input(
-                        "--id",
-                        wanted,
-                        rule,
-                        "leave it out, or name the column by --columns id=NAME",
-                    ));
-                }
-                if chosen.is_empty() {
-                    return Err(Error::unknown_name(
-                        "--id",
-                        "body",
-                        wanted,
-                        known.iter().map(String::as_str),
-                    ));
-                }
-                chosen
-            }
-        };
         let adviser = Adviser::new();
         let mut outcomes = Vec::new();
-        for (id, mut record) in bodies {
+        for (id, mut record) in found.bodies {
             let place = id.as_ref().map_or(name.to_string(), |id| format!("{name}, body {id}"));
             let mut notes = Vec::new();
             if found.counts_steps {
                 notes.push(timed(&mut record, body.as_ref(), &place)?);
             }
-            notes.extend(remark.take());
+            notes.append(&mut remarks);
             let mut question = Question::new(body.clone());
             (question.tolerance, question.claims) = (self.tolerance, claims);
             question.noise = self.noise.unwrap_or_default();
@@ -245,12 +219,8 @@ impl Audit {
             let against =
                 golden.as_ref().map(|golden| golden.difference(&place, &record, &verdict, self.tolerance));
             let against = against.transpose()?;
-            if let Some(difference) = against.as_ref().filter(|difference| difference.rows < difference.of) {
-                notes.push(format!(
-                    "{} of the {} times of {} have a row in the record",
-                    difference.rows, difference.of, difference.name
-                ));
-            }
+            let compared = golden.as_ref().zip(against.as_ref());
+            notes.extend(compared.and_then(|(golden, difference)| golden.note(&record, difference)));
             outcomes.push(Outcome {
                 body: id,
                 rows: record.times.len(),
@@ -262,6 +232,27 @@ impl Audit {
             });
         }
         Ok(outcomes)
+    }
+
+    /// Leaves the bodies of `found` that are asked for; one that is alone needs no name.
+    fn choose(&self, found: &mut FoundTrajectory) -> Result<(), Error> {
+        let Some(wanted) = &self.id else {
+            if let [(id, _)] = &mut found.bodies[..] {
+                *id = None;
+            }
+            return Ok(());
+        };
+        let known: Vec<String> = found.bodies.iter().filter_map(|(id, _)| id.clone()).collect();
+        found.bodies.retain(|(id, _)| id.as_ref() == Some(wanted));
+        if !found.bodies.is_empty() {
+            return Ok(());
+        }
+        if known.is_empty() {
+            let rule = "no column names the bodies of the record";
+            let remedy = "leave it out, or name the column by --columns id=NAME";
+            return Err(Error::input("--id", wanted, rule, remedy));
+        }
+        Err(Error::unknown_name("--id", "body", wanted, known.iter().map(String::as_str)))
     }
 }
 

@@ -68,7 +68,7 @@ impl Trajectory {
                 "give the length of a step, s, as --time-unit",
             );
         }
-        if !found.second_attitude.is_empty() && !table.names_columns() {
+        if !found.second_attitude.is_empty() && !table.names_quantities() {
             let rule = format!(
                 "the columns {} hold another attitude, which is not read",
                 found.second_attitude.join(", ")

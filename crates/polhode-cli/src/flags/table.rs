@@ -34,9 +34,9 @@ impl TableArguments {
         )))
     }
 
-    /// Whether a flag names columns.
-    pub(crate) fn names_columns(&self) -> bool {
-        self.columns.is_some()
+    /// Whether a flag names columns of a quantity.
+    pub(crate) fn names_quantities(&self) -> bool {
+        self.columns.as_ref().is_some_and(ColumnNames::name_quantities)
     }
 
     /// Refuses a unit of time or a rate of samples where times are dates, or seconds and nanoseconds in two columns.

@@ -13,8 +13,13 @@ const BODY: &str = "--moments 1,2,3";
 
 /// t, q (w, x, y, z) and ω in body axes of the motion by `method`.
 fn rows(method: &str) -> Vec<[f64; 8]> {
+    rows_at("--until 20 --every 0.1", method)
+}
+
+/// The same at other times.
+fn rows_at(times: &str, method: &str) -> Vec<[f64; 8]> {
     let line = format!(
-        "propagate {BODY} --omega 0.4,1,-0.3 --attitude 0.9,0.1,-0.3,0.2 --until 20 --every 0.1 --fields t,q,omega --format csv"
+        "propagate {BODY} --omega 0.4,1,-0.3 --attitude 0.9,0.1,-0.3,0.2 {times} --fields t,q,omega --format csv"
     );
     let text = output(&format!("{line} {method}"));
     let numbers = |line: &str| -> Vec<f64> { line.split(',').map(|cell| cell.parse().unwrap()).collect() };
@@ -467,12 +472,125 @@ fn flags_of_columns_that_a_record_has_not_are_refused() {
     let poses = scratch.file("poses.csv", poses);
     refused(&format!("audit {poses} {BODY} --omega-frame body"), &["--omega-frame: 'body'", "leave it out"]);
     refused(&format!("audit {poses} {BODY} --rate-unit rpm"), &["--rate-unit: 'rpm'", "leave it out"]);
+    let says = "poses.csv: the noise of the angular velocity is declared to be 0.01, and the record has no";
+    refused(&format!("audit {poses} {BODY} --noise 0,0.01"), &[says, "declare 0"]);
     let rates = table("t,wx,wy,wz", rows("").iter().map(|r| vec![r[0], r[5], r[6], r[7]]));
     let rates = scratch.file("rates.csv", rates);
     for (flag, value) in [("--quaternion", "xyzw"), ("--attitude", "space-to-body")] {
         let says = format!("{flag}: '{value}'");
         refused(&format!("audit {rates} {BODY} {flag} {value}"), &[says.as_str(), "and none is read"]);
     }
+    let says = "rates.csv: the noise of the attitude is declared to be 0.01, and the record has no";
+    refused(&format!("audit {rates} {BODY} --noise 0.01"), &[says, "declare 0"]);
+}
+
+/// Of the bodies of a file only the one that is audited counts.
+#[test]
+fn flags_of_columns_that_the_chosen_body_has_not_are_refused() {
+    let scratch = Scratch::new("audit-chosen");
+    let second = "box2_qw,box2_qx,box2_qy,box2_qz,box2_wx,box2_wy,box2_wz";
+    let header = format!("t,box1_qw,box1_qx,box1_qy,box1_qz,{second}");
+    let both = rows("").into_iter().map(|r| [&r[..5], &r[1..]].concat());
+    let file = scratch.file("both.csv", table(&header, both));
+    let line = format!("audit {file} {BODY} --omega-frame body --id");
+    assert_eq!(run(&format!("{line} box2")).code, 0);
+    refused(&format!("{line} box1"), &["--omega-frame: 'body'", "leave it out"]);
+}
+
+#[test]
+fn any_order_is_refused_where_no_moments_could_change_places() {
+    let scratch = Scratch::new("audit-order");
+    let columns = "t,q_w,q_x,q_y,q_z,omega_body_x,omega_body_y,omega_body_z";
+    let file = scratch.file("free.csv", table(columns, rows("").iter().map(|r| r.to_vec())));
+    let code = |flags: &str| run(&format!("audit {file} --moments 1,3,2 {flags}")).code;
+    assert_eq!((code(""), code("--any-order")), (1, 0));
+    refused(&format!("audit {file} --any-order"), &["--any-order: no moments are given"]);
+    let wheel = format!("audit {file} {BODY} --wheel 0,0,1,0.05@3 --any-order");
+    refused(&wheel, &["--any-order: the wheels are along axes of the body"]);
+}
+
+/// What is written of a row.
+type Cells<'a> = &'a dyn Fn(&[f64; 8]) -> Vec<f64>;
+
+/// A golden trajectory with a line of moments above its header.
+fn golden(scratch: &Scratch, name: &str, header: &str, rows: impl Iterator<Item = Vec<f64>>) -> String {
+    scratch.file(name, table(&format!("# moments: 1,2,3\n{header}"), rows))
+}
+
+#[test]
+fn a_golden_trajectory_is_read_by_the_rules_of_any_other() {
+    let scratch = Scratch::new("audit-golden-rules");
+    let columns = "t,q_w,q_x,q_y,q_z,omega_body_x,omega_body_y,omega_body_z";
+    let all = rows("");
+    let record = scratch.file("run.csv", table(columns, all.iter().map(|r| r.to_vec())));
+    let against = |header: &str, of: Cells| {
+        let file = golden(&scratch, "golden.csv", header, all.iter().map(of));
+        format!("audit {record} --against {file} --format json")
+    };
+    let second = "t,q_w,q_x,q_y,q_z,box2_qw,box2_qx,box2_qy,box2_qz";
+    let cases: [(&str, Cells, &str); 4] = [
+        (second, &|r| [&r[..5], &r[1..5]].concat(), "the columns box2_qw, box2_qx, box2_qy, box2_qz hold"),
+        ("t,q0,q1,q2,q3", &|r| r[..5].to_vec(), "do not say where the scalar stands"),
+        ("t,phi,theta,psi", &|r| r[..4].to_vec(), "do not say their sequence"),
+        ("t,sigma_1,sigma_2,sigma_3", &|r| vec![r[0], 1e200, 0.0, 0.0], "too large for a number"),
+    ];
+    for (header, of, says) in cases {
+        refused(&against(header, of), &["golden.csv: ", says, "polhode audit --golden DIR"]);
+    }
+    let text = table("t,q_w,q_x,q_y,q_z", all.iter().map(|r| r[..5].to_vec()));
+    let dated = |(k, row): (usize, &str)| match row.split_once(',') {
+        Some((_, rest)) if k > 0 => format!("{},{rest}\n", 1_700_000_000_000_u64 + 100 * k as u64),
+        _ => format!("# moments: 1,2,3\n{row}\n"),
+    };
+    let dated = scratch.file("dated.csv", text.lines().enumerate().map(dated).collect::<String>());
+    refused(&format!("audit {record} --against {dated}"), &["dated.csv: ", "ms since 1970"]);
+    let answer = run(&against("t,q_w,q_x,q_y,q_z,energy", &|r| [&r[..5], &[7.0][..]].concat()));
+    let warnings = verdict(&answer)["warnings"].to_string();
+    assert_eq!(answer.code, 0, "{warnings}");
+    assert!(warnings.contains("golden.csv: not read: energy"), "{warnings}");
+}
+
+/// Times are whole sixteenths of a second.
+#[test]
+fn a_comparison_of_some_rows_promises_nothing_of_all() {
+    let scratch = Scratch::new("audit-golden-times");
+    let header = "t,q_w,q_x,q_y,q_z,omega_body_x,omega_body_y,omega_body_z";
+    let record = rows_at("--until 20 --every 0.125", "");
+    let record = scratch.file("run.csv", table(header, record.iter().map(|r| r.to_vec())));
+    let against = |rows: &mut dyn Iterator<Item = [f64; 8]>| {
+        let file = golden(&scratch, "golden.csv", header, rows.map(|r| r.to_vec()));
+        format!("audit {record} --against {file} --format json")
+    };
+    let every = |times: &str| rows_at(times, "").into_iter();
+    let beside = |rows: &mut dyn Iterator<Item = [f64; 8]>| {
+        let answer = run(&against(rows));
+        let found = verdict(&answer);
+        let words = found["verdict"].as_str().unwrap().to_string();
+        (answer.code, words, found["against"]["rows"].clone(), found["warnings"].to_string())
+    };
+    // all rows of the golden trajectory, or all of the record
+    let (code, found, rows, told) = beside(&mut every("--until 20 --every 0.25"));
+    assert_eq!((code, found.as_str(), rows), (0, "right", 81.into()), "{told}");
+    let (code, found, rows, told) = beside(&mut every("--until 40 --every 0.125"));
+    assert_eq!((code, found.as_str(), rows), (0, "right", 161.into()), "{told}");
+    assert!(told.contains("161 of the 321 rows of") && !told.contains("the verdict is open"), "{told}");
+    // the times of both are the multiples of 0.375 s up to 20 s
+    let (code, found, rows, told) = beside(&mut every("--until 30 --every 0.1875"));
+    assert_eq!((code, found.as_str(), rows), (1, "undecided", 54.into()), "{told}");
+    for part in ["54 of the 161 rows of", "(t = 0 to 30 s)", "161 rows of the record (t = 0 to 20 s)"] {
+        assert!(told.contains(part) && told.contains("the verdict is open"), "{part}: {told}");
+    }
+    // one time of 81
+    let odd = |r: &[f64; 8]| r[0] == 0.0 || (r[0] / 0.1875) % 2.0 == 1.0;
+    let (code, found, rows, told) = beside(&mut every("--until 30 --every 0.1875").filter(odd));
+    assert_eq!((code, found.as_str(), rows), (1, "undecided", 1.into()), "{told}");
+    // a difference at any of them is one
+    let still = |r: [f64; 8]| [r[0], 1.0, 0.0, 0.0, 0.0, r[5], r[6], r[7]];
+    let (code, found, _, told) = beside(&mut every("--until 30 --every 0.1875").map(still));
+    assert_eq!((code, found.as_str()), (1, "wrong"), "{told}");
+    let later = |r: [f64; 8]| [r[0] + 100.0, r[1], r[2], r[3], r[4], r[5], r[6], r[7]];
+    let line = against(&mut every("--until 20 --every 0.25").map(later));
+    refused(&line, &["run.csv: 0 of the 81 rows of", "(t = 100 to 120 s)", "the 161 rows of the record"]);
 }
 
 #[test]
@@ -494,6 +612,8 @@ fn a_second_attitude_that_is_not_read_is_no_part_of_a_verdict() {
         &format!("audit {file} --moments 1,2,3"),
         &["two.csv", "the columns box2_qw, box2_qx, box2_qy, box2_qz hold another attitude", "--columns"],
     );
+    // the name of the times alone tells not whose attitude is meant
+    refused(&format!("audit {file} --moments 1,2,3 --columns t=t"), &["two.csv", "hold another attitude"]);
     let named = "--columns qw=q_w,qx=q_x,qy=q_y,qz=q_z,wx=omega_body_x,wy=omega_body_y,wz=omega_body_z";
     let answer = run(&format!("audit {file} --moments 1,2,3 {named}"));
     assert_eq!(answer.code, 0, "{}{}", answer.out, answer.err);

@@ -64,6 +64,12 @@ impl ColumnNames {
         Ok(Self(found))
     }
 
+    /// Whether columns of a quantity are named, and not only those of times and bodies.
+    #[must_use]
+    pub fn name_quantities(&self) -> bool {
+        self.0.iter().any(|(key, _)| key != "t" && key != "id")
+    }
+
     /// The place of the column that `key` names among `cells`, if it names one.
     pub(crate) fn place(&self, key: &str, cells: &[String]) -> Result<Option<usize>, Rule> {
         let Some((_, wanted)) = self.0.iter().find(|(known, _)| known == key) else { return Ok(None) };
@@ -114,6 +120,7 @@ mod tests {
         let cells = ["A, b", "x", "y", "C"].map(String::from);
         assert_eq!(flags.place("t", &cells), Ok(Some(0)));
         assert_eq!(flags.groups(&cells).unwrap()[0].places, [1, 2, 3]);
+        assert!(flags.name_quantities() && !ColumnNames::parse("t=1,id=2").unwrap().name_quantities());
         assert!(ColumnNames::parse("t=1,t=2").unwrap_err().contains("twice"));
         let part = ColumnNames::parse("wx=x").unwrap().groups(&cells).unwrap_err();
         assert!(part.to_string().contains("wy=NAME is missing"), "{part}");

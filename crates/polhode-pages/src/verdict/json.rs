@@ -98,7 +98,7 @@ pub fn object(outcome: &Outcome) -> Value {
     }
     if let Some(difference) = &outcome.against {
         value["against"] = json!({
-            "file": difference.name, "rows": difference.rows, "largest": difference.largest, "at": difference.at,
+            "file": difference.name, "rows": difference.rows, "of": difference.of, "largest": difference.largest, "at": difference.at,
             "tolerance": difference.tolerance, "exact": verdict.attitude_error.map(|error| error.largest),
         });
     }

@@ -30,6 +30,8 @@ pub struct Difference {
     pub rows: usize,
     /// Rows of the golden trajectory.
     pub of: usize,
+    /// Whether every row of one of the two is at a time of the other.
+    pub is_whole: bool,
     /// Largest angle between the attitudes, rad.
     pub largest: f64,
     /// When, s.
@@ -47,19 +49,25 @@ impl Difference {
 }
 
 impl Outcome {
+    /// The judgement, beside a golden trajectory too: a comparison of some rows decides nothing of the others.
+    pub(super) fn judged(&self) -> Judgement {
+        match (&self.against, self.verdict.judgement) {
+            (Some(difference), Judgement::Right) if !difference.is_within() => Judgement::Wrong,
+            (Some(difference), Judgement::Right) if !difference.is_whole => Judgement::Undecided,
+            (_, judgement) => judgement,
+        }
+    }
+
     /// Whether it is right, beside a golden trajectory too.
     #[must_use]
     pub fn is_right(&self) -> bool {
-        self.verdict.judgement == Judgement::Right && self.against.as_ref().is_none_or(Difference::is_within)
+        self.judged() == Judgement::Right
     }
 
     /// `right`, `wrong` or `undecided`.
     #[must_use]
     pub fn judgement(&self) -> String {
-        match (&self.against, self.verdict.judgement) {
-            (Some(difference), Judgement::Right) if !difference.is_within() => Judgement::Wrong.to_string(),
-            (_, judgement) => judgement.to_string(),
-        }
+        self.judged().to_string()
     }
 
     /// What is wrong, in one word.

@@ -32,9 +32,9 @@ fn one(outcome: &Outcome) -> Vec<Block> {
     let verdict = &outcome.verdict;
     let suspect =
         if outcome.is_suspected() { format!(" Suspect: {}.", outcome.suspect()) } else { String::new() };
-    let tone = match verdict.judgement {
-        Judgement::Right if outcome.is_right() => Tone::Good,
-        Judgement::Right | Judgement::Wrong => Tone::Bad,
+    let tone = match outcome.judged() {
+        Judgement::Right => Tone::Good,
+        Judgement::Wrong => Tone::Bad,
         Judgement::Undecided => Tone::Doubtful,
     };
     let mut parts = vec![

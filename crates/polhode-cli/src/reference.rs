@@ -1,0 +1,60 @@
+//! Attitudes that others are compared with: nothing but their names tells how they are read.
+
+use polhode::audit::{Attitudes, Direction, Reading, Trajectory};
+use polhode_files::error::Error;
+use polhode_files::text::short;
+use polhode_files::trajectory::FoundTrajectory;
+
+use crate::flags::attitude::check_matrices;
+
+/// The attitudes of the file `name` and how they are read. `refused`: the refusal by a rule, and what to do.
+///
+/// # Errors
+/// Counts of steps, several bodies or attitudes, a convention that is left open, and what is no attitude.
+pub(crate) fn attitudes(
+    found: FoundTrajectory,
+    name: &str,
+    refused: impl Fn(&str, &str) -> Error,
+) -> Result<(Trajectory, Reading), Error> {
+    if found.counts_steps {
+        return Err(refused("counts steps of a length that it does not tell", "write its times in s"));
+    }
+    if !found.second_attitude.is_empty() {
+        let second = found.second_attitude.join(", ");
+        let rule = format!("the columns {second} hold another attitude, which is not read");
+        return Err(refused(&rule, "write a file with one attitude"));
+    }
+    let claims = found.claims;
+    let mut bodies = found.bodies;
+    let rows = match (bodies.len(), bodies.pop()) {
+        (1, Some((_, rows))) if rows.attitude.is_some() => rows,
+        _ => {
+            let rule = "is not the trajectory of one body with its attitude";
+            return Err(refused(rule, "name a file with t, q_w, q_x, q_y, q_z"));
+        }
+    };
+    let open = match (&rows.attitude, claims.quaternion) {
+        (Some(Attitudes::Quaternions(_)), None) => Some("its quaternions do not say where the scalar stands"),
+        (Some(Attitudes::Angles(_)), _) => Some("its Euler angles do not say their sequence"),
+        _ => None,
+    };
+    if let Some(rule) = open {
+        return Err(refused(rule, "write its attitudes in columns q_w, q_x, q_y, q_z"));
+    }
+    if let Some(Attitudes::Matrices(matrices)) = &rows.attitude {
+        check_matrices(matrices, &rows.times, name)?;
+    }
+    let mut reading = Reading::default();
+    reading.quaternion = claims.quaternion;
+    reading.attitude = Some(claims.attitude.unwrap_or(Direction::BodyToSpace));
+    // a distance from what is no number is never too large
+    for (row, &t) in rows.times.iter().enumerate() {
+        let attitude = reading.attitude(&rows, row);
+        let is_number = attitude.is_some_and(|q| q.components().iter().all(|x| x.is_finite()));
+        if !is_number {
+            let rule = format!("the attitude at t = {} s is too large for a number", short(t));
+            return Err(refused(&rule, "write its attitudes in columns q_w, q_x, q_y, q_z"));
+        }
+    }
+    Ok((rows, reading))
+}
