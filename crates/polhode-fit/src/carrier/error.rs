@@ -174,3 +174,30 @@ pub enum CarrierError {
     #[error("the joint fit has no certified answer: {0}")]
     Solver(#[from] SolverFailure),
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a refusal asks for follows from its numbers: deviations, how much heavier a proof body must be, how far deviations are enlarged.
+    #[test]
+    fn refusals_of_a_joint_fit_say_their_numbers() {
+        let says = |error: CarrierError, parts: &[&str]| {
+            let text = error.to_string();
+            assert!(parts.iter().all(|part| text.contains(part)), "{text}: {parts:?}");
+        };
+        let (trace, sigma) = (0.5, 0.25);
+        let light = |inverse| CarrierError::TooLight { trace, inverse, sigma, needed: 5.0, bound: 0.8 };
+        says(light(0.5), &["2.0 standard deviations where 5 are", "at least 2.5 times", "below 8.000e-1"]);
+        // below one deviation its size tells nothing
+        says(light(0.125), &["0.5 standard deviations", "at least 5.0 times"]);
+        says(CarrierError::WheelSense { inertia: -1.5, sigma }, &["-1.500e0 +-", "6.0 standard"]);
+        let contradicted = CarrierError::Contradicted { chi2: 900.0, dof: 4, trace, sigma };
+        says(contradicted, &["900.0 of 4", "enlarged by 15.0", "5.00e-1 +- 2.50e-1"]);
+        says(CarrierError::NoSize { told: Some((trace, sigma)) }, &["5.00e-1 +- 2.50e-1 1/(kg m^2), too"]);
+        assert!(!CarrierError::NoSize { told: None }.to_string().contains("too little"));
+        says(CarrierError::ObjectSize { moved: Some((trace, sigma)) }, &["with the proof body one over"]);
+        assert!(!CarrierError::ObjectSize { moved: None }.to_string().contains("with the proof body"));
+        says(CarrierError::Unsettled { rounds: 60, moved: 0.5 }, &["60 rounds", "5.0e-1 standard"]);
+    }
+}

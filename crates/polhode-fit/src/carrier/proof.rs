@@ -119,3 +119,29 @@ pub(super) fn parallel_axis(
     let reduced = mass / (1.0 + mass / carrier);
     Ok((Matrix3::identity() * place.norm_squared() - place * place.transpose()) * reduced)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The deviation of an entry ij is the share times the root of D_ii D_jj, that of no entry where there is none.
+    #[test]
+    fn deviations_of_a_proof_body_go_with_its_moments() {
+        let tensor = Matrix3::new(4.0, 1.0, 0.0, 1.0, 9.0, 0.0, 0.0, 0.0, 9.0);
+        let body = ProofBody::adding(tensor).unwrap();
+        // halves of 4, 9, 9, of √36, √36 and √81
+        let halves = [2.0, 4.5, 4.5, 3.0, 3.0, 4.5];
+        assert_eq!(body.with_deviation(0.5).deviations(), Ok(Some(halves)));
+        assert_eq!(body.with_deviation(0.5).with_deviation(None::<f64>).deviations(), Ok(None));
+        for share in [0.0, -0.5, f64::NAN, f64::INFINITY, 1e-170] {
+            let refused = body.with_deviation(share).deviations();
+            let Err(CarrierError::Setting { name, .. }) = refused else { panic!("{share}: {refused:?}") };
+            assert_eq!(name, "the deviation of the proof body");
+        }
+        // squares of 22e-150 are numbers, those of 22e-160 have lost their digits
+        assert!(ProofBody::adding(tensor * 1e-150).is_ok());
+        let refused = ProofBody::adding(tensor * 1e-160);
+        let Err(CarrierError::Setting { name, value, .. }) = refused else { panic!("{refused:?}") };
+        assert!(name == "the trace of the proof body" && (value / 22e-160 - 1.0).abs() < 1e-12, "{value:e}");
+    }
+}

@@ -206,3 +206,96 @@ pub(super) fn slope_of_shape(x: &Coordinates, trace: f64) -> SMatrix<f64, 5, 6> 
         (coordinates(&e) - x * e.trace()) / trace
     }))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn alone(attached: Attached, proof: Option<ProofBody>, centre: &[f64], sigma: f64) -> Alone {
+        let size = centre.len();
+        let root = DMatrix::identity(size, size) / sigma;
+        Alone { attached, proof, told: Normal { centre: DVector::from_column_slice(centre), root } }
+    }
+
+    /// A proof body of trace 1 with a product of 0.1, on a sphere of trace 3: the shape changes along xy alone, by √2 · 0.1 μ with
+    /// μ = 1/4, and one over the trace of both has the deviations along that, over √2 · 0.1.
+    #[test]
+    fn two_shapes_tell_the_trace_with_the_deviation_along_their_difference() {
+        let (mu, product, sigma) = (0.25, 0.1, 0.01);
+        let along = core::f64::consts::SQRT_2 * product;
+        let mut added = Matrix3::identity() / 3.0;
+        (added[(0, 1)], added[(1, 0)]) = (product, product);
+        let proof = ProofBody::adding(added).unwrap();
+        let base = alone(Attached::Nothing, None, &[0.0; 5], sigma);
+        let with = alone(Attached::Proof, Some(proof), &[0.0, 0.0, along * mu, 0.0, 0.0], sigma);
+        // of the base (1 − μ)² of the variance; of an entry xy 2 s² μ²
+        let own = sigma * sigma * (1.0 + 0.5625);
+        for (deviations, variance) in [
+            (None, own),
+            (Some([0.0, 0.0, 0.0, 0.02, 0.0, 0.0]), own + 2.0 * 4e-4 / 16.0),
+            (Some([0.0, 0.0, 0.0, 0.0, 0.02, 0.02]), own),
+        ] {
+            let found = pair(&base, &with, &proof, deviations).unwrap();
+            assert!((found.inverse - mu).abs() < 1e-12 && (found.added - 1.0).abs() < 1e-15);
+            let expected = variance.sqrt() / along;
+            assert!((found.sigma / expected - 1.0).abs() < 1e-12, "{} {expected}", found.sigma);
+            assert!((found.trace() - 3.0).abs() < 1e-10 && found.shape == Coordinates::zeros());
+        }
+        // a quotient of 2 without it falls by the share 1 − μ: its slope is −2
+        let base = alone(Attached::Nothing, None, &[2.0, 0.0, 0.0, 0.0, 0.0, 0.0], sigma);
+        let both = alone(Attached::Proof, Some(proof), &[1.5, 0.0, 0.0, along * mu, 0.0, 0.0], sigma);
+        let found = pair(&base, &both, &proof, None).unwrap();
+        let expected = (own / (4.0 + along * along)).sqrt();
+        assert!((found.inverse - mu).abs() < 1e-12 && (found.sigma / expected - 1.0).abs() < 1e-12);
+        // where one has no quotient the shapes tell it alone
+        let found = pair(&base, &with, &proof, None).unwrap();
+        assert!((found.sigma * along / own.sqrt() - 1.0).abs() < 1e-12);
+    }
+
+    /// One over the trace that stands out of five deviations tells it; the carrier keeps a thousandth of that at least.
+    #[test]
+    fn a_pair_tells_the_size_beyond_five_deviations() {
+        let pair = |inverse, sigma| Pair { shape: Coordinates::zeros(), added: 1.0, inverse, sigma };
+        assert!((pair(0.25, 0.01).trace() - 3.0).abs() < 1e-15);
+        assert!((pair(2.0, 0.01).trace() - 5e-4).abs() < 1e-18);
+        assert!(pair(0.51, 0.1).is_told() && !pair(0.49, 0.1).is_told());
+        assert_eq!(pair(-0.51, 0.1).untold(), CarrierError::Opposite { inverse: -0.51, sigma: 0.1 });
+        let light =
+            CarrierError::TooLight { trace: 1.0, inverse: -0.49, sigma: 0.1, needed: 5.0, bound: 2.0 };
+        assert_eq!(pair(-0.49, 0.1).untold(), light);
+        let all = [pair(0.2, 0.1), pair(0.3, 0.05), pair(-0.9, 0.1)];
+        assert_eq!(surest(&all).map(|pair| pair.inverse), Some(0.3));
+        assert!(surest(&[]).is_none());
+    }
+
+    /// The deviation of one over the trace is that with the shape left open: 1 + 0.75² where the root has 0.75 beside its one.
+    #[test]
+    fn the_trace_has_the_deviation_of_an_open_shape() {
+        let mut one = alone(Attached::Nothing, None, &[0.5, 0.1, 0.2, 0.3, 0.4, 0.6], 1.0);
+        one.told.root[(0, 1)] = 0.75;
+        assert_eq!(one.inverse(), Some((0.5, 1.25)));
+        assert_eq!(one.shape(), Coordinates::new(0.1, 0.2, 0.3, 0.4, 0.6));
+        assert_eq!(alone(Attached::Nothing, None, &[0.5, 0.1, 0.2, 0.3, 0.4], 1.0).inverse(), None);
+    }
+
+    /// A quotient j/(t + d) of a wheel tells carrier and object without what the proof body adds, and a wheel of no inertia tells nothing.
+    #[test]
+    fn wheels_tell_the_object_beside_a_proof_body() {
+        let body = Matrix3::new(2.0, 0.1, 0.0, 0.1, 3.0, -0.2, 0.0, -0.2, 4.0);
+        let proof = ProofBody::adding(Matrix3::identity() * 2.0).unwrap();
+        let (wheel, both) = (0.5, body + proof.added());
+        let shape = coordinates(&(both / both.trace()));
+        let of = |wheel: f64| {
+            let centre: Vec<f64> = [wheel / both.trace()].into_iter().chain(shape.iter().copied()).collect();
+            [
+                alone(Attached::Nothing, None, &[0.0; 5], 1e-4),
+                alone(Attached::ObjectAndProof, Some(proof), &centre, 1e-4),
+            ]
+        };
+        let (relative, found) = object(&of(wheel), Some(wheel)).unwrap();
+        assert!((found - body).amax() < 1e-13, "{found}");
+        assert!((relative / (1e-4 * 15.0 / 0.5) - 1.0).abs() < 1e-12, "{relative}");
+        let none = object(&of(wheel), Some(-wheel)).unwrap_err();
+        assert_eq!(none, CarrierError::ObjectSize { moved: None });
+    }
+}

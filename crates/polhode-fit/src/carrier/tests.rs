@@ -6,9 +6,9 @@ use polhode::num::Random;
 use polhode::record::{Record, Segment};
 
 use crate::carrier::error::CarrierError;
-use crate::carrier::law::{is_held, is_physical};
+use crate::carrier::law::{bodies, is_held, is_physical};
 use crate::carrier::proof::{ProofBody, parallel_axis};
-use crate::carrier::records::Attached;
+use crate::carrier::records::{Attached, CarrierRecords};
 use crate::carrier::start::{Alone, Start, start};
 use crate::carrier::system::{Part, System};
 use crate::carrier::told::Told;
@@ -273,6 +273,43 @@ fn the_law_is_that_of_the_body_without_its_term() {
     let with_term = (1, 0.1, -symmetric(2) * 0.5);
     assert!(is_physical(&with_term, &flat(0.4)) && !is_physical(&with_term, &flat(0.6)));
     assert_eq!(ENTRIES[2], (2, 2));
+}
+
+/// An inequality holds an answer where it is open by less than a millionth of the trace, or of the unit of a body that is smaller.
+#[test]
+fn the_law_holds_up_to_a_millionth() {
+    let body = (0, 1.0, Matrix3::zeros());
+    // 100 + 200 and 0.1 + 0.2 exceed the third by so much
+    for (unit, near, far) in [(100.0, 5e-4, 7e-4), (0.1, 8e-7, 1.2e-6)] {
+        let open = |by: f64| DVector::from_vec(vec![unit, 2.0 * unit, 3.0 * unit - by, 0.0, 0.0, 0.0]);
+        assert!(is_held(&body, &open(near)) && !is_held(&body, &open(far)), "{unit}");
+    }
+}
+
+/// What must be physical of an object is what it adds less its parallel-axis term, in its unit; what starts at zero has that of the carrier.
+#[test]
+fn bodies_of_the_law_have_their_places_and_units() {
+    let records = CarrierRecords::new(Record::default());
+    let at = |object: Matrix3<f64>, wheel: f64| {
+        let begin = Start { carrier: carrier(), object: Some(object), wheel: Some(wheel), sizes: Vec::new() };
+        System::new(Vec::new(), vec![0.01], &begin)
+    };
+    let (system, z) = at(object(), -2.0);
+    assert_eq!((z.len(), system.wheel, z[1]), (14, Some((1, 2.0)), -1.0));
+    assert_eq!((system.object, system.carrier), (Some((2, object().norm())), (8, carrier().trace())));
+    // two equal masses two apart: a term of (0, 2, 2)
+    let placed = records.clone().with_object_at(1.0, Vector3::x() * 2.0, 1.0).unwrap();
+    let [of_carrier, (place, unit, base)] = bodies(&system, &placed)[..] else { panic!() };
+    assert_eq!(of_carrier, (8, carrier().trace(), Matrix3::zeros()));
+    assert_eq!((place, unit), (2, object().norm()));
+    let term = Matrix3::from_diagonal(&Vector3::new(0.0, 2.0, 2.0));
+    assert!((base * unit + term).amax() < 1e-14, "{base}");
+    assert_eq!(bodies(&system, &records)[1].2, Matrix3::zeros());
+    let (system, z) = at(Matrix3::zeros(), 0.0);
+    let unit = carrier().trace();
+    assert_eq!((system.wheel, system.object), (Some((1, unit)), Some((2, unit))));
+    assert!(z.rows(1, 7).iter().all(|value| *value == 0.0));
+    assert!(system.squares(&z).is_some() && system.dof(14) == 0);
 }
 
 /// Masses, places and traces that no body has are refused by name.

@@ -98,3 +98,59 @@ impl Told {
         centre.iter().all(|v| v.is_finite()).then_some(Normal { centre, root })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use polhode::num::Random;
+
+    /// Two torques, of which the first depends on the second: values follow from the last row to the first, and the drag that would be
+    /// negative is told by its column.
+    #[test]
+    fn drag_that_gives_energy_is_told_by_its_column() {
+        let drags = |places| Drags {
+            own: DMatrix::from_row_slice(2, 2, &[2.0, 1.0, 0.0, 4.0]),
+            shared: DMatrix::from_row_slice(2, 2, &[1.0, 0.0, 0.0, -2.0]),
+            right: DVector::from_vec(vec![0.5, -3.0]),
+            places,
+        };
+        let told = |places| Told {
+            root: DMatrix::identity(2, 2),
+            right: DVector::zeros(2),
+            has_input: false,
+            drags: drags(places),
+        };
+        let both = told(vec![(0, 7), (1, 3)]);
+        // v₁ = (3 + 2 m₁)/4 and v₀ = (−½ − m₀ − v₁)/2
+        for (m, gains) in [([0.0, 0.0], vec![7]), ([-2.0, 0.0], vec![]), ([-2.0, -2.0], vec![3])] {
+            assert_eq!(both.gains(&DVector::from_column_slice(&m)), gains, "{m:?}");
+        }
+        assert_eq!(both.gains(&DVector::from_column_slice(&[0.0, -2.0])), [7, 3]);
+        // another torque may have any sign
+        assert!(told(vec![(1, 3)]).gains(&DVector::zeros(2)).is_empty());
+    }
+
+    /// Alone a record says what the normal distribution of all readings does when the errors of the sensor, with their priors, are left open.
+    #[test]
+    fn errors_of_the_sensor_are_at_their_best_by_their_priors() {
+        let mut random = Random::new(8);
+        let (priors, size) = ([0.5, 2.0], 7);
+        let any = DMatrix::from_fn(size, size, |_, _| random.normal());
+        let root = any.upper_triangle() + DMatrix::identity(size, size) * 6.0;
+        let right = DVector::from_fn(size, |_, _| random.normal());
+        let mut information = root.tr_mul(&root);
+        priors.iter().enumerate().for_each(|(k, prior)| information[(k, k)] += 1.0 / (prior * prior));
+        let covariance = information.try_inverse().unwrap();
+        let centre = -(&covariance * root.tr_mul(&right));
+        let drags = Drags {
+            own: DMatrix::zeros(0, 0),
+            shared: DMatrix::zeros(0, size),
+            right: DVector::zeros(0),
+            places: Vec::new(),
+        };
+        let found = Told { root, right, has_input: false, drags }.alone(&priors).unwrap();
+        assert!((&found.centre - centre.rows(2, 5)).amax() < 1e-13, "{}", found.centre);
+        let own = found.root.tr_mul(&found.root) * covariance.view((2, 2), (5, 5));
+        assert!((own - DMatrix::<f64>::identity(5, 5)).amax() < 1e-12);
+    }
+}

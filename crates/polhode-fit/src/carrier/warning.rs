@@ -67,3 +67,46 @@ pub(super) fn light(object: &MeasuredBody) -> Option<CarrierWarning> {
     let (trace, sigma) = object.trace();
     (trace <= SURE * sigma).then_some(CarrierWarning::LightObject { trace, sigma })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
+
+    /// The deviation of a trace comes from the entries xx, yy and zz alone, with what they share; five of them hide an object.
+    #[test]
+    fn an_object_is_light_within_five_deviations_of_its_trace() {
+        let object = |sigma: f64| {
+            let mut covariance = SMatrix::<f64, 6, 6>::repeat(1e3);
+            // 2 + 1 − 2 of the square
+            let own = Matrix3::new(2.0, -1.0, 0.0, -1.0, 1.0, 0.0, 0.0, 0.0, 0.0) * (sigma * sigma);
+            covariance.fixed_view_mut::<3, 3>(0, 0).copy_from(&own);
+            MeasuredBody {
+                tensor: Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 3.0)),
+                covariance,
+                principal: [1.0, 2.0, 3.0],
+                sigma_principal: [sigma; 3],
+                axes: UnitQuaternion::identity(),
+            }
+        };
+        // a trace of 6 between 5 · 1.1875 and 5 · 1.25
+        assert_eq!(light(&object(1.25)), Some(CarrierWarning::LightObject { trace: 6.0, sigma: 1.25 }));
+        assert_eq!(light(&object(1.1875)), None);
+    }
+
+    #[test]
+    fn warnings_of_a_joint_fit_say_their_numbers() {
+        let agreement = Agreement { chi2: 900.0, dof: 4 };
+        let told = contradiction(agreement);
+        assert_eq!(told, Some(CarrierWarning::Contradiction { chi2: 900.0, dof: 4 }));
+        let says = |warning: CarrierWarning, parts: &[&str]| {
+            let text = warning.to_string();
+            assert!(parts.iter().all(|part| text.contains(part)), "{text}: {parts:?}");
+        };
+        // the root of 900/4
+        says(told.unwrap(), &["900.0 of 4 degrees", "enlarged by 15.0"]);
+        says(CarrierWarning::LightObject { trace: 6.0, sigma: 1.25 }, &["6.00e0 +- 1.25e0 kg m^2"]);
+        says(CarrierWarning::Held { name: "object", pull: 2.5 }, &["of the object", "lies 2.5 standard"]);
+        assert_eq!(contradiction(Agreement { chi2: 4.0, dof: 4 }), None);
+    }
+}
