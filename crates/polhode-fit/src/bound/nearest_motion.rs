@@ -208,6 +208,61 @@ mod tests {
         }
     }
 
+    /// The sum of squares, each mean as often as it has samples, falls by twice its gradient and grows by its information.
+    #[test]
+    fn distances_fall_as_their_gradient_says() {
+        let euler = Euler::new(Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45))).unwrap();
+        let start = Start { time: 2.0, rate: Vector3::new(0.5, 0.8, -0.4) };
+        let times: Vec<f64> = (0..40).map(|k| 0.125 * f64::from(k)).collect();
+        let line = |t: &f64| Vector3::new(0.5 - 0.1 * t, 0.6, 0.1 * t - 0.4);
+        let s = Stretch::new(times.clone(), times.iter().map(line).collect());
+        // three samples each
+        let means = Means::new(&s, 0.3);
+        let sum = |means: &Means<'_>, rate: Vector3<f64>| {
+            let mut sum = 0.0;
+            euler.sweep(&means.times[2..11], &Start { rate, ..start }, |i, w, _: &Sensitivity<3>| {
+                sum += 3.0 * (means.rates[2 + i] - w).norm_squared();
+            });
+            sum
+        };
+        let found = Distance::new(&euler, &means, 2..11, &start);
+        assert!((found.sum / sum(&means, start.rate) - 1.0).abs() < 1e-12);
+        // the number of steps of the integrator may change with the rate, and the sum by 1e-5 with it
+        let h = 1e-3;
+        for k in 0..3 {
+            let step = Vector3::ith(k, h);
+            let slope = (sum(&means, start.rate + step) - sum(&means, start.rate - step)) / (2.0 * h);
+            let apart = (slope + 2.0 * found.gradient[k]).abs();
+            assert!(apart < 2e-2 * found.gradient.amax(), "{k}: {slope} {}", found.gradient[k]);
+        }
+        // about the motion itself nothing but the quadratic form is left
+        let mut rates = means.rates.to_vec();
+        euler.sweep(&means.times, &start, |i, w, _: &Sensitivity<3>| rates[i] = *w);
+        let (times, counts) = (means.times.clone(), means.counts.clone());
+        let of_motion = Means { times, rates: rates.into(), counts };
+        for step in [Vector3::new(0.6, -0.5, 0.3), Vector3::new(-0.2, 0.1, 0.7)].map(|step| step * 3e-4) {
+            let expected = step.dot(&(found.information * step));
+            assert!((sum(&of_motion, start.rate + step) / expected - 1.0).abs() < 3e-2, "{step}");
+        }
+    }
+
+    /// A long range is gone through from its start to both ends side by side, which changes no sum.
+    #[test]
+    fn a_long_range_is_the_sum_of_both_sides() {
+        let euler = Euler::new(Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45))).unwrap();
+        let start = Start { time: 3.0, rate: Vector3::new(0.5, 0.8, -0.4) };
+        let count = LONG / 10 + 4;
+        let times: Vec<f64> = (0..count).map(|k| k as f64 / 1024.0).collect();
+        let s = Stretch::new(times, vec![Vector3::new(0.4, 0.7, 0.0); count]);
+        let means = Means::of_one(&s);
+        let range = 2..count - 1;
+        let found = Distance::new(&euler, &means, range.clone(), &start);
+        let one = Distance::one_by_one(&euler, &means, range, &start);
+        assert!((found.sum / one.sum - 1.0).abs() < 1e-10);
+        assert!((found.gradient - one.gradient).amax() < 1e-10 * one.gradient.amax());
+        assert!((found.information - one.information).amax() < 1e-10 * one.information.amax());
+    }
+
     /// The cubic by least squares is a sum of the samples within the radius, three on each side at least, with weights that are known of
     /// seven and of nine.
     #[test]

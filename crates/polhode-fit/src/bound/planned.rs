@@ -156,3 +156,23 @@ impl Law<'_> {
         read
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::columns::skew::Skew;
+
+    /// A delay of the y axis shows the rate of an earlier time: less of J₂ ω₂' = (J₃ − J₁) ω₃ ω₁, and the other axes show what they did.
+    #[test]
+    fn readings_of_a_delayed_axis_lag_by_its_slope() {
+        let j = Matrix3::from_diagonal(&Vector3::new(0.25, 0.25, 0.5));
+        let columns = [Column::new(Skew(1), Some(1e-3))];
+        let law = Law { inverse: j.try_inverse().unwrap(), terms: Terms::at(j), columns: &columns };
+        let s = Matrix3xX::from_fn(9, |i, k| (3 * k + i) as f64);
+        let read = law.readings(&Vector3::new(2.0, 5.0, 3.0), &s, 0.0);
+        // (0.5 − 0.25) · 3 · 2 / 0.25
+        let lag = Vector3::new(0.0, 6.0, 0.0);
+        assert!((read.column(5) - (s.column(5) - lag)).amax() < 1e-12, "{read}");
+        assert!((0..9).filter(|k| *k != 5).all(|k| read.column(k) == s.column(k)));
+    }
+}

@@ -3,13 +3,15 @@
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
+use polhode::rotation::{Quat, Vec3};
 
 use crate::bound::attitudes::foreseen_attitude_bound;
 use crate::bound::motions::{Motions, foreseen_bound};
 use crate::bound::nearest_motion::nearest_motion;
 use crate::bound::planned::foreseen_bound_with;
 use crate::bound::sensitivity::{Euler, Sensitivity, Start, of_tensor};
-use crate::physical::coordinates::{coordinates, tensor};
+use crate::likelihood::motion::{self, Motion};
+use crate::physical::coordinates::{coordinates, entries_of_coordinates, tensor};
 use crate::physical::prior::Prior;
 use crate::settings::Settings;
 use crate::settings::torque::TorqueModel;
@@ -58,6 +60,24 @@ fn the_nearest_motion_is_the_one_that_was_simulated() {
         &(coordinates(&body()) + coordinates(&Matrix3::from_diagonal(&Vector3::new(0.09, -0.09, 0.0)))),
     );
     assert!(nearest_motion(&Euler::new(other).unwrap(), &samples(times, 1e-3), 1e-6).is_none());
+}
+
+/// A motion may leave a twentieth of how the samples vary, whatever noise is stated: noise of 3 % of it is left, noise of 8 % is not.
+#[test]
+fn a_motion_may_leave_a_twentieth_of_the_variation() {
+    let euler = Euler::new(body()).unwrap();
+    let times: Vec<f64> = (0..1500).map(|k| 0.02 * f64::from(k)).collect();
+    let exact = samples(times.clone(), 0.0).rates;
+    let mean = exact.iter().sum::<Vector3<f64>>() / 1500.0;
+    let variation: f64 = exact.iter().map(|w| (w - mean).norm_squared()).sum();
+    let mut random = Random::new(7);
+    for (share, is_left) in [(0.03, true), (0.08, false)] {
+        // of 4500 components: the share itself scatters by √(2/4500) of it
+        let sigma = (share / (1.0 - share) * variation / 4500.0).sqrt();
+        let rates = exact.iter().map(|w| w + random.normal_vector() * sigma).collect();
+        let s = Stretch::new(times.clone(), rates);
+        assert_eq!(nearest_motion(&euler, &s, 1e-12).is_some(), is_left, "{share}");
+    }
 }
 
 /// Dense samples within a step of the integrator count by their cubics as by themselves, before the start and after it.
@@ -199,6 +219,41 @@ fn plans_have_no_units() {
         // the trace is 1 and known
         assert!(bound.fixed_view::<3, 3>(0, 0).sum().abs() < 1e-9 * bound.amax(), "{k}");
     }
+}
+
+/// What attitudes tell is that of differences of motions through one attitude and rate in the middle of them.
+#[test]
+fn the_bound_of_attitudes_is_that_of_differences() {
+    let (rate, sigma, h) = (start() * 1.5, 0.02, 1e-5);
+    let times: Vec<f64> = (0..60).map(|k| 3.0 + 0.2 * f64::from(k)).collect();
+    let middle = 0.5 * (times[0] + times[59]);
+    let moved = |k: usize, by: f64| {
+        let (mut x, mut turn, mut rate) = (coordinates(&body()), Vector3::<f64>::zeros(), rate);
+        match k {
+            0..5 => x[k] += by,
+            5..8 => turn[k - 5] += by,
+            _ => rate[k - 8] += by,
+        }
+        let attitude = Quat::exponential(Vec3::from(turn));
+        Motion::new(&x, &motion::Start { attitude, rate }, 0.0).unwrap()
+    };
+    let pairs: [(Motion, Motion); 11] = core::array::from_fn(|k| (moved(k, h), moved(k, -h)));
+    let mut information = SMatrix::<f64, 11, 11>::zeros();
+    for t in &times {
+        let at = |motion: &Motion| motion.at(t - middle).unwrap().attitude;
+        let slopes = pairs.each_ref().map(|(above, below)| {
+            let turn: Vector3<f64> = (at(below).conjugate() * at(above)).logarithm().into();
+            turn / (2.0 * h)
+        });
+        let rows = SMatrix::<f64, 3, 11>::from_columns(&slopes);
+        information += rows.tr_mul(&rows) / (sigma * sigma);
+    }
+    let bound = information.try_inverse().unwrap().fixed_view::<5, 5>(0, 0).into_owned();
+    let expected = entries_of_coordinates() * bound * entries_of_coordinates().transpose();
+    let inertia = Inertia::from_tensor(body() * 3.0).unwrap();
+    let found = foreseen_attitude_bound(&inertia, rate, &times, sigma).unwrap();
+    let apart = (found - expected).amax() / expected.amax();
+    assert!(apart < 1e-3, "{apart:e}");
 }
 
 /// With a drag of zero among the unknowns no number of the tensor is known better; with a close prior they are known as by that.

@@ -127,10 +127,10 @@ mod tests {
     #[test]
     fn moments_have_the_deviations_along_their_axes() {
         let system = system();
-        let mut answer = DVector::zeros(14);
+        let mut answer = DVector::<f64>::zeros(14);
         // half of it: xx, yy, zz and xy of 1, 1, 3 and 1
         answer.rows_mut(8, 4).copy_from_slice(&[2.0, 2.0, 6.0, 2.0]);
-        let mut covariance = DMatrix::zeros(14, 14);
+        let mut covariance = DMatrix::<f64>::zeros(14, 14);
         let own = [(0, 0, 4.0), (1, 1, 4.0), (2, 2, 16.0), (3, 3, 1.0), (0, 3, 1.0), (3, 0, 1.0)];
         own.into_iter().for_each(|(i, k, value)| covariance[(8 + i, 8 + k)] = value);
         let report = Report { system: &system, answer: &answer, covariance: &covariance };
