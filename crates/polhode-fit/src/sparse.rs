@@ -141,3 +141,87 @@ fn explains(tracks: &[Track], level: f64) -> bool {
     }
     level * level * components <= LEFT * variation
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::sensor::SensorPriors;
+
+    /// Of samples a second apart that turn by so much until the next.
+    fn turning(turns: &[f64]) -> Segment {
+        let times = (0..turns.len()).map(|k| 10.0 + k as f64).collect();
+        Segment::new("a", times, turns.iter().map(|turn| Vector3::y() * *turn).collect()).unwrap()
+    }
+
+    fn of(segments: Vec<Segment>) -> Record {
+        let mut record = Record::default();
+        record.segments.extend(segments);
+        record
+    }
+
+    /// The median of the turns from one sample to the next decides, the upper one of an even number; a tenth of a turn is 0.6283 rad.
+    #[test]
+    fn rates_are_sparse_beyond_a_tenth_of_a_turn() {
+        let is = |all: &[&[f64]]| is_sparse(&of(all.iter().map(|turns| turning(turns)).collect()));
+        // after the last sample nothing is known
+        assert!(is(&[&[0.63, 0.0]]) && !is(&[&[0.62, 9.0]]));
+        assert!(is(&[&[0.7, 0.1, 0.0]]) && !is(&[&[0.7, 0.1, 0.1, 0.0]]));
+        assert!(is(&[&[0.7, 0.1, 0.7, 0.0]]) && is(&[&[0.1, 0.1, 0.0], &[0.7, 0.7, 0.0]]));
+        assert!(!is(&[]) && !is(&[&[9.0]]));
+    }
+
+    /// The likelihood takes the torques that it has, and nothing that only the weak form has.
+    #[test]
+    fn what_only_the_weak_form_has_is_left_to_it() {
+        let record = of(vec![turning(&[0.7, 0.7])]);
+        let is = |settings: Settings| is_plain(&record, &settings);
+        let plain = Settings::default;
+        for (torque, expected) in [
+            (TorqueModel::Auto, true),
+            (TorqueModel::None, true),
+            (TorqueModel::Drag, true),
+            (TorqueModel::Constant, true),
+            (TorqueModel::Drag3, false),
+            (TorqueModel::Quadratic, false),
+        ] {
+            assert_eq!(is(plain().with_torque(torque)), expected, "{torque}");
+        }
+        assert!(is(plain().with_torque_noise(TorqueNoise::None)) && is(plain().with_noise(0.1)));
+        assert!(!is(plain().with_torque_noise(TorqueNoise::Given(1e-6))) && !is(plain().with_radius(0.5)));
+        assert!(!is(plain().with_sensor(SensorPriors::default().with_skew(1e-3))));
+        let wheel = turning(&[0.7, 0.7]).with_wheel(vec![Vector3::z(); 2]).unwrap();
+        assert!(!is_plain(&of(vec![turning(&[0.7, 0.7]), wheel]), &plain()));
+    }
+
+    /// A step q of readings that all differ is noise of variance q²/12: beside a noise that is given, and where the motion leaves less.
+    #[test]
+    fn the_rounding_of_a_step_is_part_of_the_noise() {
+        let record = of(vec![turning(&[0.5, 0.7, 0.4])]);
+        let plain = Settings::default();
+        let stepped = plain.clone().with_quantum(0.6);
+        let noise = |settings: &Settings, left: f64| with_rounding(&record, settings, left).noise;
+        assert_eq!((noise(&plain, 0.1), noise(&plain.clone().with_noise(0.4), 0.1)), (None, Some(0.4)));
+        let near = |found: Option<f64>, variance: f64| {
+            found.is_some_and(|found| (found * found / variance - 1.0).abs() < 1e-12)
+        };
+        assert!(near(noise(&stepped.clone().with_noise(0.4), 9.0), 0.19));
+        // 0.03 lies between the squares
+        assert!(near(noise(&stepped, 0.17), 0.03) && noise(&stepped, 0.18).is_none());
+        assert_eq!(with_rounding(&record, &stepped, 0.1).quantum, Some(0.6));
+    }
+
+    /// A twentieth of the squares about the mean of each track may be left: of ±1 about any mean 2 · 0.05 of six components.
+    #[test]
+    fn a_motion_explains_all_but_a_twentieth() {
+        let track = |mean: f64| Track {
+            times: vec![-0.5, 0.5],
+            attitudes: Vec::new(),
+            rates: [1.0, -1.0].map(|x| Vector3::new(mean + x, 0.0, mean)).to_vec(),
+            used: vec![true; 2],
+        };
+        // the root of 0.1/6 is 0.1291
+        for tracks in [vec![track(0.0)], vec![track(7.0)], vec![track(3.0), track(-5.0)]] {
+            assert!(explains(&tracks, 0.129) && !explains(&tracks, 0.1295), "{}", tracks.len());
+        }
+    }
+}

@@ -146,3 +146,103 @@ impl Contradiction {
         self.gross.iter().flatten().filter(|g| **g).count() as f64 / self.turning.max(1) as f64
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix3, Vector3};
+    use polhode::inertia::Inertia;
+    use polhode::num::Random;
+
+    use crate::flights::equations::tests;
+    use crate::physical::coordinates::coordinates;
+    use crate::signal::stretch::Stretch;
+    use crate::simulate::simulate;
+
+    fn body() -> Matrix3<f64> {
+        Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45))
+    }
+
+    /// Tests of 30 s of a body of trace 1 that a hand turns to and fro beside its motion, from 24 s on if there is one.
+    fn recording(hand: f64) -> Vec<Test> {
+        let times: Vec<f64> = (0..600).map(|k| 0.05 * f64::from(k)).collect();
+        let (inertia, start) = (Inertia::from_tensor(body()).unwrap(), Vector3::new(0.5, 0.8, -0.4));
+        let mut rates = simulate(&inertia, start, &times, 1e-4, &mut Random::new(3)).unwrap();
+        for (t, w) in times.iter().zip(&mut rates).skip(480) {
+            *w += Vector3::new(1.0, -0.7, 0.4) * (hand * libm::sin(3.0 * (t - 24.0)));
+        }
+        tests(&Stretch::new(times, rates), 1.0)
+    }
+
+    /// Drag is expected by 0.03 of the momentum a radian, no input and no number of the tensor is; moments may break the law by 0.03.
+    #[test]
+    fn what_is_expected_of_a_window_and_of_a_tensor() {
+        let found = precisions(2.0);
+        let drag = 1.0 / (0.06 * 0.06);
+        assert!(found.iter().take(5).chain(found.iter().skip(9)).all(|one| *one == 1.0), "{found}");
+        assert!((5..8).all(|k| (found[k] / drag - 1.0).abs() < 1e-12) && found[8] == f64::EPSILON, "{found}");
+        for (moments, is) in [
+            ([-0.02, 0.5, 0.52], true),
+            ([-0.04, 0.52, 0.52], false),
+            ([0.2, 0.28, 0.52], true),
+            ([0.2, 0.26, 0.54], false),
+        ] {
+            let x = coordinates(&Matrix3::from_diagonal(&Vector3::from(moments)));
+            assert_eq!(is_possible(&x), is, "{moments:?}");
+        }
+    }
+
+    /// Windows of twelve tests begin at every second one, and one ends at the last; none where the body hardly turns.
+    #[test]
+    fn windows_begin_at_every_second_test() {
+        let all = recording(0.0);
+        let firsts = |parts: &[Vec<Test>], speed: f64| -> Vec<(usize, usize)> {
+            windows(parts, speed, 1e-8).iter().map(|window| (window.stretch, window.first)).collect()
+        };
+        assert!(firsts(&[all[..11].to_vec()], 1.0).is_empty());
+        assert_eq!(firsts(&[all[..12].to_vec()], 1.0), [(0, 0)]);
+        let parts = [all[..11].to_vec(), all[..15].to_vec(), all[..16].to_vec()];
+        assert_eq!(firsts(&parts, 1.0), [(1, 0), (1, 2), (1, 3), (2, 0), (2, 2), (2, 4)]);
+        assert!(firsts(&parts, 1e3).is_empty());
+        // the tensor of the body leaves no more than its prior
+        let x = coordinates(&body());
+        assert!(windows(&parts, 1.0, 1e-8).iter().all(|window| window.sums.mean_square(&x) < 0.01));
+    }
+
+    /// The tensor that most windows agree on is that of the body, and the tests that a hand touches are not free.
+    #[test]
+    fn windows_agree_on_the_body_that_turns_freely() {
+        let all = recording(1.0);
+        let Ok(found) = consensus(core::slice::from_ref(&all), 1.0, 1e-8) else { panic!() };
+        assert!((found.x - coordinates(&body())).norm() < 0.02, "{}", found.x);
+        let free = |from: f64, to: f64| {
+            let own = all.iter().zip(&found.free[0]).filter(|(test, _)| (from..to).contains(&test.centre));
+            let own: Vec<bool> = own.map(|(_, free)| *free).collect();
+            own.iter().filter(|free| **free).count() as f64 / own.len() as f64
+        };
+        assert_eq!((found.free.len(), found.free[0].len()), (1, all.len()));
+        assert!(free(0.0, 22.0) == 1.0 && free(26.0, 30.0) < 0.2, "{:?}", found.free);
+        // no window, no agreement
+        let none = consensus(&[all[..11].to_vec()], 1.0, 1e-8);
+        assert!(matches!(none, Err(NoConsensus { least: None })));
+    }
+
+    /// Four tests in a row contradict a free body, three and those of two stretches do not; shares are of the tests that turn.
+    #[test]
+    fn a_contradiction_lasts_for_four_tests() {
+        let of = |gross: &[&[u8]], turning| Contradiction {
+            gross: gross.iter().map(|own| own.iter().map(|g| *g == 1).collect()).collect(),
+            turning,
+        };
+        let three = of(&[&[0, 1, 1, 1, 0, 1], &[1, 1, 1, 0]], 20);
+        assert!(three.is_none() && three.share() == 0.35);
+        assert!(!of(&[&[0, 0], &[0, 1, 1, 1, 1]], 20).is_none());
+        assert!(of(&[], 0).is_none() && of(&[], 0).share() == 0.0);
+        let free = recording(0.0);
+        let found = Contradiction::new(core::slice::from_ref(&free), 1.0, 1e-8).unwrap();
+        assert!(found.is_none() && found.share() == 0.0 && found.turning == free.len());
+        // at a speed beside which it hardly turns
+        let slow = Contradiction::new(&[free], 1e3, 1e-8).unwrap();
+        assert!(slow.turning == 0 && slow.share() == 0.0);
+    }
+}

@@ -3,11 +3,13 @@
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
+use polhode::record::{Record, Segment};
 
 use crate::flights::consensus::precisions;
 use crate::flights::equations::{LOCAL, Normal, Test, UNKNOWNS, Vector, tests};
-use crate::flights::extent::{extent, runs};
+use crate::flights::extent::{Extent, extent, runs};
 use crate::flights::flight::FlightLimit;
+use crate::flights::{flight, radius, speed, turned, whole};
 use crate::physical::coordinates::{Coordinates, coordinates};
 use crate::signal::stretch::{KnownInputs, Stretch};
 use crate::simulate::{Disturbances, Gyroscope, simulate_with};
@@ -114,6 +116,69 @@ fn the_other_unknowns_are_at_their_best_for_a_tensor() {
         let mut step = Vector::from_fn(|_, _| 0.02 * random.normal());
         step.fixed_rows_mut::<5>(0).fill(0.0);
         assert!(squares(&(at + step)) >= found * (1.0 - 1e-9));
+    }
+}
+
+/// The way of a rate of 1, 3 and 5 at 0, 1 and 3 s is 2 + 8; squares of 1 and 4 weighted with themselves are 17/5; eight samples of 5/3
+/// are longer than a radian at a rate of 1, and not at 1/20.
+#[test]
+fn ways_rates_and_radii_are_those_of_the_samples() {
+    let along = |sizes: &[f64]| sizes.iter().map(|size| Vector3::y() * *size).collect::<Vec<_>>();
+    assert_eq!(turned(&[0.0, 1.0, 3.0], &along(&[1.0, 3.0, 5.0])), 10.0);
+    let of = |times: &[f64], sizes: &[f64]| Stretch::new(times.to_vec(), along(sizes));
+    let all = [of(&[0.0], &[1.0]), of(&[0.0], &[-2.0])];
+    assert!((speed(&all) - 3.4_f64.sqrt()).abs() < 1e-15);
+    let all = [of(&[0.0, 1.0, 2.0], &[1.0; 3]), of(&[5.0, 8.0], &[1.0; 2])];
+    assert!((radius(&all, 1.0) - 40.0 / 3.0).abs() < 1e-14);
+    assert_eq!(radius(&all, 0.05), 20.0);
+}
+
+/// A flight ends at the samples of its stretch, or at those within its span, and shares none with the one before.
+#[test]
+fn a_flight_has_the_samples_within_its_span() {
+    // 40 s at 2 Hz, of which the stretch has 5 to 35 s in half seconds
+    let times: Vec<f64> = (0..81).map(|k| 0.5 * f64::from(k)).collect();
+    let segment = Segment::new("a", times, vec![Vector3::z() * 2.0; 81]).unwrap();
+    let own: Vec<f64> = (0..61).map(f64::from).collect();
+    let stretch = Stretch { segment: 3, start: 5.0, ..Stretch::new(own, vec![Vector3::z(); 61]) };
+    let edge = (FlightLimit::Edge, FlightLimit::Edge);
+    let torque = (FlightLimit::Slow, FlightLimit::Torque { share: 0.5 });
+    let of = |span: [f64; 2], (before, after): (FlightLimit, FlightLimit), last: Option<f64>| {
+        flight(&segment, &stretch, 2.0, span, &Extent { tests: 0..1, before, after }, last)
+    };
+    for (span, limits, last, expected) in [
+        ([2.0, 12.0], edge, None, (5.0, 35.0, 61)),
+        ([2.0, 12.0], edge, Some(9.0), (9.5, 35.0, 52)),
+        ([2.0, 12.0], torque, None, (7.0, 17.0, 21)),
+        ([2.0, 12.0], torque, Some(9.0), (9.5, 17.0, 16)),
+        ([2.2, 12.2], (edge.0, torque.1), None, (5.0, 17.0, 25)),
+        ([2.2, 12.2], (torque.0, edge.1), None, (7.5, 35.0, 56)),
+    ] {
+        let found = of(span, limits, last).unwrap();
+        assert_eq!((found.start, found.end, found.samples), expected, "{span:?} {last:?}");
+        // at a rate of 2
+        assert_eq!(found.turned, 2.0 * (expected.1 - expected.0));
+        assert_eq!((found.segment, found.before, found.after), (3, limits.0, limits.1));
+    }
+    // sixteen samples are enough, fifteen are not
+    assert!(of([2.0, 9.5], torque, None).is_some() && of([2.0, 9.0], torque, None).is_none());
+}
+
+/// A record that nowhere contradicts a free body has its segments as flights.
+#[test]
+fn a_whole_record_is_its_segments() {
+    let mut record = Record::default();
+    for start in [0.0, 10.0] {
+        let times = vec![start, start + 1.0, start + 3.0];
+        record.segments.push(Segment::new("a", times, vec![Vector3::x() * 2.0; 3]).unwrap());
+    }
+    let found = whole(&record);
+    assert!(found.whole && found.list.len() == 2);
+    for (k, flight) in found.list.iter().enumerate() {
+        let start = 10.0 * k as f64;
+        assert_eq!((flight.segment, flight.start, flight.end), (k, start, start + 3.0));
+        assert_eq!((flight.samples, flight.turned), (3, 6.0));
+        assert_eq!((flight.before, flight.after), (FlightLimit::Edge, FlightLimit::Edge));
     }
 }
 
