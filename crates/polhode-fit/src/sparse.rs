@@ -196,7 +196,8 @@ mod tests {
     /// A step q of readings that all differ is noise of variance q²/12: beside a noise that is given, and where the motion leaves less.
     #[test]
     fn the_rounding_of_a_step_is_part_of_the_noise() {
-        let record = of(vec![turning(&[0.5, 0.7, 0.4])]);
+        let rates = (0..4).map(|k| Vector3::repeat(f64::from(k))).collect();
+        let record = of(vec![Segment::new("a", vec![0.0, 1.0, 2.0, 3.0], rates).unwrap()]);
         let plain = Settings::default();
         let stepped = plain.clone().with_quantum(0.6);
         let noise = |settings: &Settings, left: f64| with_rounding(&record, settings, left).noise;

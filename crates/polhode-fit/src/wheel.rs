@@ -186,7 +186,7 @@ mod tests {
     #[test]
     fn warnings_of_a_calibration_say_their_numbers() {
         for (warning, parts) in [
-            (WheelWarning::TorqueNoise { density: 2.5e-3 }, ["check the body, its axes", "up to 2.5e-3 (rad"]),
+            (WheelWarning::TorqueNoise { density: 2.5e-3 }, ["check the body, its axes", "up to 2.5e-3"]),
             (WheelWarning::Residuals { misfit: 1.75 }, ["check the body, its axes", "1.75 times the mean"]),
             (WheelWarning::NoWheel { value: 1.5e-3, sigma: 0.5 }, ["no wheel shows", "1.50e-3 +- 5.0e-1"]),
         ] {

@@ -87,4 +87,32 @@ mod tests {
         let mirrored: Vec<Vector3<f64>> = rates.iter().map(|w| Vector3::new(-w.x, w.y, w.z)).collect();
         assert!(align(&nodes, &mirrored).unwrap().is_mirror);
     }
+
+    /// Rates of three times the size along turned axes have that scale, and what does not turn has no axes.
+    #[test]
+    fn the_scale_is_that_of_the_rates() {
+        let node = |rate| Node { time: 0.0, attitude: Quat::identity(), rate, variance: 0.0 };
+        let nodes = [Vector3::x(), Vector3::y() * 2.0, Vector3::z()].map(node);
+        let turn = Quat::exponential(Vec3([0.0, 0.0, 0.5]));
+        let rates = nodes.map(|node| Vector3::from(turn.rotate(Vec3::from(node.rate * 3.0)).0));
+        let found = align(&nodes, &rates).unwrap();
+        assert!((found.scale - 3.0).abs() < 1e-14 && !found.is_mirror);
+        assert!((found.turn.conjugate() * turn).logarithm().norm() < 1e-14);
+        assert!(align(&nodes, &[Vector3::zeros(); 3]).is_none());
+        assert!(align(&[Vector3::zeros(); 3].map(node), &rates).is_none());
+    }
+
+    /// Rates that leave a plane by little are their own mirror image up to a turn: a twentieth of the squares along the widest axis tells
+    /// the two apart.
+    #[test]
+    fn a_mirror_is_seen_where_rates_leave_a_plane() {
+        let node = |rate| Node { time: 0.0, attitude: Quat::identity(), rate, variance: 0.0 };
+        for (share, is_mirror) in [(0.06, true), (0.04, false), (0.0, false)] {
+            let nodes = [Vector3::x(), Vector3::y(), Vector3::z() * f64::sqrt(share)].map(node);
+            let rates = nodes.map(|node| Vector3::new(node.rate.x, node.rate.y, -node.rate.z));
+            let found = align(&nodes, &rates).unwrap();
+            assert_eq!(found.is_mirror, is_mirror, "{share}");
+            assert!((found.scale - 1.0).abs() < 1e-15 && found.turn.v.norm() < 1e-13, "{share}");
+        }
+    }
 }

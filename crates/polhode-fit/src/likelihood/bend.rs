@@ -51,3 +51,41 @@ fn means(s: &Stretch, together: usize) -> Track {
     let (times, rates): (Vec<f64>, Vec<Vector3<f64>>) = (times.collect(), rates.collect());
     Track { used: vec![true; times.len()], times, attitudes: Vec::new(), rates }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physical::coordinates::coordinates;
+    use crate::simulate::simulate;
+    use nalgebra::Matrix3;
+    use polhode::inertia::Inertia;
+    use polhode::num::Random;
+
+    /// Means of three about the middle of all times; what is left over is in none.
+    #[test]
+    fn means_of_neighbours_count_from_the_middle() {
+        let times = vec![0.0, 1.0, 2.0, 3.0, 4.0, 7.0, 8.0];
+        let rates = (0..7).map(|k| Vector3::new(f64::from(k), 1.0, 0.0)).collect();
+        let found = means(&Stretch::new(times, rates), 3);
+        // the middle is at 4
+        assert!((found.times[0] + 3.0).abs() < 1e-15 && (found.times[1] - 2.0 / 3.0).abs() < 1e-15);
+        assert_eq!(found.rates, [Vector3::new(1.0, 1.0, 0.0), Vector3::new(4.0, 1.0, 0.0)]);
+        assert!(found.times.len() == 2 && found.used == [true; 2] && found.attitudes.is_empty());
+    }
+
+    /// By as much as the likeliest tensor is off the estimate the ellipsoid is too small; of more means than a search takes nothing is said.
+    #[test]
+    fn the_way_to_the_likeliest_tensor_is_a_deviation() {
+        let j = Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45);
+        let x = coordinates(&j);
+        let times: Vec<f64> = (0..300).map(|k| 0.1 * f64::from(k)).collect();
+        let (body, start) = (Inertia::from_tensor(j).unwrap(), Vector3::new(0.5, 0.8, -0.4));
+        let rates = simulate(&body, start, &times, 1e-4, &mut Random::new(2)).unwrap();
+        let off = Coordinates::new(0.01, -0.005, 0.0, 0.008, 0.0);
+        let found = beyond(&[Stretch::new(times, rates)], x + off, 1e-8);
+        let expected = off * off.transpose();
+        assert!((found - expected).amax() < 0.1 * expected.amax(), "{found}");
+        let long = Stretch::new((0..=MOST).map(|k| k as f64).collect(), vec![Vector3::x(); MOST + 1]);
+        assert_eq!(beyond(&[long], x, 1e-8), Form::zeros());
+    }
+}

@@ -99,4 +99,34 @@ mod tests {
             "{found:?}"
         );
     }
+
+    /// With n = J × J², component by component, J itself is an end of the chord; the other is another triple of the same three equations.
+    #[test]
+    fn both_ends_of_the_chord_solve_the_three_equations() {
+        for moments in [[0.2, 0.3, 0.5], [0.5, 0.2, 0.3], [0.1, 0.42, 0.48]] {
+            let j = Vector3::from(moments);
+            let own = j.cross(&j.component_mul(&j));
+            for n in [own, own * -7.0] {
+                let found = super::moments(&n);
+                assert_eq!(found.len(), 2);
+                for end in &found {
+                    let sums = [n.dot(end), n.dot(&end.component_mul(end)), end.sum() - 1.0];
+                    assert!(sums.iter().all(|sum| sum.abs() < 1e-12), "{moments:?}: {sums:?}");
+                }
+                assert!(found.iter().any(|end| (end - j).norm() < 1e-11), "{moments:?}: {found:?}");
+                assert!((found[0] - found[1]).norm() > 1e-3, "{moments:?}");
+            }
+        }
+        // all moments, and all of a body whose first two are one
+        assert!(super::moments(&Vector3::repeat(2.0)).is_empty());
+        assert!(super::moments(&Vector3::new(1.0, -1.0, 0.0)).is_empty());
+    }
+
+    /// Products of two rates are those of their features, which are the entries of one matrix.
+    #[test]
+    fn features_are_the_entries_of_a_square() {
+        let (a, b) = (Vector3::new(0.3, -0.5, 0.7), Vector3::new(-0.2, 0.4, 0.9));
+        assert!((features(&a).dot(&features(&b)) - a.dot(&b) * a.dot(&b)).abs() < 1e-15);
+        assert!((symmetric(&features(&a)) - a * a.transpose()).amax() < 1e-15);
+    }
 }

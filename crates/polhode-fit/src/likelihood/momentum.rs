@@ -53,6 +53,7 @@ pub(crate) fn physical(x: Coordinates) -> Option<Coordinates> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use polhode::rotation::Quat;
 
     #[test]
     fn what_is_drawn_inwards_stops_at_the_least_moment() {
@@ -62,5 +63,29 @@ mod tests {
             let (own, _) = eigen(crate::physical::coordinates::tensor(&x));
             assert!((moments[0] - own[0].max(SMALLEST)).abs() < 1e-15, "{moments}");
         }
+    }
+
+    /// Of rates ±1, ±1 and ±√2 along the axes of a body that does not turn in space the momenta vanish in the mean, and the sum of their
+    /// squares Σ 2 a² J² is least for J in proportion to 1/a². Noise of the rates adds its variance times the squares of J, which is taken
+    /// off: 1/(2 a² − e), with e up to nine tenths of the smallest eigenvalue, 2.
+    #[test]
+    fn noise_of_the_rates_is_taken_off_the_squares() {
+        let sizes = [1.0, 1.0, core::f64::consts::SQRT_2];
+        let node = |k: usize| {
+            let rate = Vector3::ith(k / 2, sizes[k / 2] * if k % 2 == 0 { 1.0 } else { -1.0 });
+            Node { time: 0.0, attitude: Quat::identity(), rate, variance: 0.5 }
+        };
+        let nodes: Vec<Node> = (0..6).map(node).collect();
+        // six variances of a half: 0, 1 and 30
+        for (noise, [first, third]) in [
+            (0.0, [2.0 / 5.0, 1.0 / 5.0]),
+            (1.0 / 3.0, [3.0 / 7.0, 1.0 / 7.0]),
+            (10.0, [11.0 / 23.0, 1.0 / 23.0]),
+        ] {
+            let found = crate::physical::coordinates::tensor(&tensor_of(&[nodes.clone()], noise).unwrap());
+            let expected = Matrix3::from_diagonal(&Vector3::new(first, first, third));
+            assert!((found - expected).amax() < 1e-12, "{noise}: {found}");
+        }
+        assert!(physical(Coordinates::repeat(f64::NAN)).is_none());
     }
 }

@@ -118,3 +118,23 @@ impl Track {
         Some(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Both ends of a window belong to it, and the farther end of a track is its reach.
+    #[test]
+    fn windows_and_reach_count_from_the_middle() {
+        let track = |times: &[f64]| Track {
+            times: times.to_vec(),
+            attitudes: Vec::new(),
+            rates: vec![Vector3::x(); times.len()],
+            used: vec![true; times.len()],
+        };
+        let one = track(&[-3.0, -1.0, 0.0, 1.0, 2.0]);
+        assert_eq!([0.5, 1.0, 2.5, 3.0].map(|radius| one.within(radius)), [1, 3, 4, 5]);
+        assert_eq!((one.reach(), track(&[-1.0, 4.0]).reach(), track(&[]).reach()), (3.0, 4.0, 0.0));
+        assert!(one.has_rates() && !one.has_attitudes());
+    }
+}
