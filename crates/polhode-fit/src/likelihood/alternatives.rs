@@ -260,3 +260,68 @@ fn outwards(
     }
     Some(())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gaining(gain: f64, count: usize) -> Found {
+        let (moved, spread) = (DVector::zeros(COMMON), DMatrix::zeros(COMMON, count));
+        Found { values: vec![0.0; count], moved, spread, sigmas: vec![1.0; count], gain }
+    }
+
+    /// An error of the rates is named where it gains enough by itself and, less one for each of its numbers, more than the other error, a
+    /// torque or axes that move.
+    #[test]
+    fn an_error_of_the_rates_is_named_where_nothing_explains_more() {
+        let (offset, scale) = (Some(RateError::Offset), Some(RateError::Scale));
+        // gains of an offset, a scale, drag, a constant torque, axes that move
+        for (gains, expected) in [
+            ([15.1, 0.0, 0.0, 0.0, 0.0], offset),
+            ([14.9, 0.0, 0.0, 0.0, 0.0], None),
+            ([0.0, 12.1, 0.0, 0.0, 0.0], scale),
+            ([0.0, 11.9, 0.0, 0.0, 0.0], None),
+            ([20.0, 17.9, 0.0, 0.0, 0.0], offset),
+            ([20.0, 18.1, 0.0, 0.0, 0.0], scale),
+            ([20.0, 0.0, 17.9, 0.0, 0.0], offset),
+            ([20.0, 0.0, 18.1, 0.0, 0.0], None),
+            ([20.0, 0.0, 0.0, 19.9, 0.0], offset),
+            ([20.0, 0.0, 0.0, 20.1, 0.0], None),
+            ([20.0, 0.0, 0.0, 0.0, 19.9], offset),
+            ([20.0, 0.0, 0.0, 0.0, 20.1], None),
+        ] {
+            let [of_offset, of_scale, drag, constant, moving] = gains;
+            let all = Alternatives {
+                drag: Some(gaining(drag, 1)),
+                constant: gaining(constant, 3),
+                moving: Some(MovingAxes { found: gaining(moving, 3), is_of_rates: true }),
+                of_attitudes: None,
+                of_rates: Some(gaining(moving, 3)),
+                offset: Some(gaining(of_offset, 3)),
+                scale: Some(gaining(of_scale, 1)),
+            };
+            assert_eq!(all.error_of_rates().map(|(error, _)| error), expected, "{gains:?}");
+            assert_eq!(all.of_error(RateError::Scale).map(|found| found.gain), Some(of_scale));
+            assert!(all.of_axes(true).is_some() && all.of_axes(false).is_none());
+        }
+    }
+
+    /// Of a single further column c beside one that is told: its value is (g_c − f g)/(h − f²) where the first has the information 1 and
+    /// shares f with it; it moves the first by −f times that, and gains half of value times slope.
+    #[test]
+    fn a_further_column_is_fitted_beside_those_of_the_model() {
+        let mut information = DMatrix::<f64>::identity(COMMON + FURTHER, COMMON + FURTHER);
+        let mut gradient = DVector::<f64>::zeros(COMMON + FURTHER);
+        let (place, shared) = (COMMON + 1, 2.0);
+        (information[(0, place)], information[(place, 0)]) = (shared, shared);
+        information[(place, place)] = 8.0;
+        (gradient[0], gradient[place]) = (0.5, 3.0);
+        let found = found(&information, &gradient, CONSTANT).unwrap();
+        // (3 − 2 · 0.5)/(8 − 4) of the first, with the other two at rest
+        assert!((Vector3::from_column_slice(&found.values) - Vector3::x() * 0.5).amax() < 1e-15);
+        assert!((found.sigmas[0] - 0.5).abs() < 1e-15 && (found.sigmas[1] - 1.0).abs() < 1e-15);
+        assert!((found.gain - 0.5).abs() < 1e-15 && (found.moved[0] + 1.0).abs() < 1e-15);
+        // −2 times a deviation of a half
+        assert!((found.spread[(0, 0)] + 1.0).abs() < 1e-15 && found.spread[(1, 0)] == 0.0);
+    }
+}

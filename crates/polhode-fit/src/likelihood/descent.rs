@@ -110,3 +110,43 @@ pub(crate) fn moved(model: &Model, step: &Step) -> Model {
         starts: starts.collect(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physical::coordinates::{Coordinates, Form};
+    use nalgebra::Vector3;
+
+    /// Squares of residuals in their deviations up to four, beyond them 2 · 4 times the size less 16; a pull is added, and what is not used
+    /// is not.
+    #[test]
+    fn the_cost_bends_at_four_deviations() {
+        let start = Start { attitude: Quat::identity(), rate: Vector3::new(0.5, 0.8, -0.4) };
+        let x = Coordinates::new(-0.06, 0.02, 0.03, -0.02, 0.04);
+        let alignment = Quat::identity();
+        let model = Model { x, alignment, is_aligned: false, drag: None, starts: vec![start] };
+        let motion = model.motion(&start).unwrap();
+        let times = vec![-2.0, -1.0, 0.0, 1.0];
+        let at = |t: &f64| motion.at(*t).unwrap();
+        let rates = times.iter().zip([0.2, 0.6, 0.8, 0.0]).map(|(t, off)| at(t).rate + Vector3::x() * off);
+        let turned = times.iter().zip([0.0, 0.0, 0.0, 0.06]);
+        let turned = turned.map(|(t, off)| at(t).attitude * Quat::exponential(Vec3([0.0, off, 0.0])));
+        let track = Track {
+            attitudes: turned.collect(),
+            rates: rates.collect(),
+            used: vec![true, true, false, true],
+            times: times.clone(),
+        };
+        let levels = Levels { attitude: 0.02, rate: 0.1 };
+        let tracks = core::slice::from_ref(&track);
+        let cost = |radius, pull| Problem { tracks, levels, radius, pull }.sums(&model).unwrap().1;
+        // two deviations, six and three: 4 + (8 · 6 − 16) + 9
+        assert!((cost(f64::INFINITY, None) - 45.0).abs() < 1e-9);
+        assert!((cost(1.0, None) - 41.0).abs() < 1e-9);
+        let centre = x + Coordinates::repeat(0.5);
+        let pull = Pull { information: Form::identity() * 4.0, centre, drag: 1.0 };
+        // 4 · 5 · 0.25
+        assert!((cost(1.0, Some(pull)) - 46.0).abs() < 1e-9);
+        assert_eq!((levels.of(Kind::Attitude), levels.of(Kind::Rate)), (0.02, 0.1));
+    }
+}

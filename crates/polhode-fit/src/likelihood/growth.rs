@@ -235,3 +235,105 @@ fn start(track: &Track, alignment: &Quat<f64>) -> Option<Start> {
     let rate = if near.is_empty() { track.rates[middle] } else { of(&near) };
     Some(Start { attitude: Quat::identity(), rate })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn begin() -> Start {
+        Start { attitude: Quat::identity(), rate: Vector3::new(0.5, 0.8, -0.4) }
+    }
+
+    fn model(is_aligned: bool, drag: Option<f64>) -> Model {
+        let x = Coordinates::new(-0.06, 0.02, 0.03, -0.02, 0.04);
+        Model { x, alignment: Quat::identity(), is_aligned, drag, starts: vec![begin()] }
+    }
+
+    /// Rates of the model that are off by so much at −1, 0, 1, 2 and 3.
+    fn off_by(sizes: [f64; 5]) -> Track {
+        let motion = model(false, None).motion(&begin()).unwrap();
+        let times: Vec<f64> = (0..5).map(|k| f64::from(k) - 1.0).collect();
+        let rate = |(t, size): (&f64, f64)| motion.at(*t).unwrap().rate + Vector3::y() * size;
+        let rates = times.iter().zip(sizes).map(rate).collect();
+        Track { rates, attitudes: Vec::new(), used: vec![true; 5], times }
+    }
+
+    /// Half of a Maxwell distribution lies below the median: erf(m/√2) − √(2/π) m exp(−m²/2) is a half.
+    #[test]
+    fn the_median_is_that_of_three_normal_components() {
+        let root = core::f64::consts::FRAC_1_SQRT_2;
+        let density = core::f64::consts::FRAC_2_SQRT_PI * root * libm::exp(-0.5 * MEDIAN * MEDIAN);
+        assert!((libm::erf(MEDIAN * root) - density * MEDIAN - 0.5).abs() < 1e-12);
+    }
+
+    /// Six numbers of a start with attitudes and three of one without, five of the tensor, three of an alignment and one of drag.
+    #[test]
+    fn unknowns_are_counted() {
+        let rates = off_by([0.0; 5]);
+        let both = Track { attitudes: vec![Quat::identity(); 5], ..rates.clone() };
+        let tracks = [both, rates];
+        assert!(has_both(&tracks) && !has_both(&tracks[1..]));
+        assert_eq!(unknowns(&tracks, &model(true, Some(0.0))), 18.0);
+        assert_eq!(unknowns(&tracks, &model(false, None)), 14.0);
+        assert_eq!(unknowns(&tracks[1..], &model(false, Some(0.0))), 9.0);
+    }
+
+    /// The median residual within the radius over that of a unit normal distribution, or half of the noise that is known.
+    #[test]
+    fn levels_are_those_of_the_median_residual() {
+        let tracks = [off_by([0.1, 0.5, 0.2, 0.4, 0.3])];
+        let of = |radius: f64, known: f64| {
+            let known = Levels { attitude: known, rate: known };
+            let found = scales(&tracks, &model(false, None), radius, known).unwrap();
+            (found.rate * MEDIAN, found.attitude)
+        };
+        for (radius, median) in [(f64::INFINITY, 0.3), (1.0, 0.2)] {
+            let (found, attitude) = of(radius, 0.01);
+            assert!((found / median - 1.0).abs() < 1e-12 && attitude == 0.005, "{radius}: {found}");
+        }
+        assert_eq!(of(1.0, 1.0), (0.5 * MEDIAN, 0.5));
+    }
+
+    /// Readings beyond six deviations are left out, and what is left out is neither counted nor left out again.
+    #[test]
+    fn outliers_are_left_out_once() {
+        let mut tracks = [off_by([0.1, 0.5, 0.2, 0.4, 0.3])];
+        let model = model(false, None);
+        let levels = |rate| Levels { attitude: 0.0, rate };
+        assert_eq!(leave_out(&mut tracks, &model, levels(0.0835)), Some(false));
+        assert_eq!(leave_out(&mut tracks, &model, levels(0.055)), Some(true));
+        assert_eq!(tracks[0].used, [true, false, true, false, true]);
+        assert_eq!(leave_out(&mut tracks, &model, levels(0.055)), Some(false));
+        let ([attitudes, rates], counts) = squares(&tracks, &model).unwrap();
+        // 0.01 + 0.04 + 0.09
+        assert!(attitudes == 0.0 && (rates - 0.14).abs() < 1e-12);
+        assert_eq!(counts, [0.0, 9.0]);
+    }
+
+    /// Of an even turn the attitude between two samples is that of the middle, along the axes of the tensor.
+    #[test]
+    fn a_start_is_that_of_the_middle() {
+        let (rate, first) = (Vector3::new(0.3, -0.7, 0.4), Quat::exponential(Vec3([0.2, 0.1, 1.0])));
+        let alignment = Quat::exponential(Vec3([0.4, -0.2, 0.7]));
+        let times = vec![-0.45, -0.25, -0.05, 0.15, 0.35];
+        let turned = |t: &f64| first * Quat::exponential(Vec3::from(rate * *t));
+        let attitudes: Vec<Quat<f64>> = times.iter().map(turned).collect();
+        let track = Track { times, attitudes, rates: Vec::new(), used: vec![true; 5] };
+        let found = start(&track, &alignment).unwrap();
+        let expected = first * alignment.conjugate();
+        assert!((expected.conjugate() * found.attitude).logarithm().norm() < 1e-12);
+        let along: Vector3<f64> = alignment.rotate(Vec3::from(rate)).into();
+        assert!((found.rate - along).norm() < 1e-12);
+        // of rates the mean within a quarter of the first window, or the next one
+        for (times, mean) in [
+            (vec![-1.0, -0.2, 0.1, 0.25, 0.26, 1.0], 2.0),
+            (vec![-1.0, -0.4, 0.3, 0.5, 0.6, 1.0], 2.0),
+            (vec![-1.0, -0.9, -0.8, -0.7, -0.6, -0.5], 5.0),
+        ] {
+            let rates = (0..6).map(|k| Vector3::z() * f64::from(k)).collect();
+            let track = Track { times, attitudes: Vec::new(), rates, used: vec![true; 6] };
+            let found = start(&track, &alignment).unwrap();
+            assert_eq!((found.attitude, found.rate), (Quat::identity(), Vector3::z() * mean));
+        }
+    }
+}

@@ -113,3 +113,28 @@ impl Walk<'_> {
         Some((model, cost - self.least))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::likelihood::descent::Levels;
+    use polhode::rotation::Quat;
+
+    /// The way off the axis of a walk counts where the quadratic form makes more than 1 of it, twice over the end of the walk.
+    #[test]
+    fn a_walk_bends_by_its_way_off_the_axis() {
+        let x = Coordinates::new(0.01, 0.02, 0.03, 0.04, 0.05);
+        let alignment = Quat::identity();
+        let model = Model { x, alignment, is_aligned: false, drag: None, starts: Vec::new() };
+        let levels = Levels { attitude: 1.0, rate: 1.0 };
+        let problem = Problem { tracks: &[], levels, radius: f64::INFINITY, pull: None };
+        let direction = Coordinates::new(0.0, 0.5, 0.0, 0.0, 0.0);
+        let form = Form::identity() * 100.0;
+        let walk = Walk { problem: &problem, model: &model, direction, information: 4.0, form, least: 0.0 };
+        let end = |off: f64| x + Coordinates::new(0.0, 3.0, off, 0.0, 0.0);
+        let found = walk.bend(&end(0.11)).unwrap();
+        let expected = Coordinates::new(0.0, 0.0, 0.22 / END, 0.0, 0.0);
+        assert!((found - expected).amax() < 1e-15, "{found}");
+        assert!(walk.bend(&end(0.09)).is_none());
+    }
+}

@@ -442,7 +442,10 @@ impl WeakEstimate {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physical::coordinates::{Coordinates, trace_free};
+    use crate::columns::input::Input;
+    use crate::columns::sets::sensor_columns;
+    use crate::physical::coordinates::{Coordinates, Form, coordinates, trace_free};
+    use crate::settings::sensor::SensorPriors;
     use polhode::num::Random;
 
     /// Against the equation of motion, also of moments that no body has.
@@ -463,5 +466,144 @@ mod tests {
                 assert!((change - expected).norm() < 1e-6 * (1.0 + expected.norm()), "{moments:?}");
             }
         }
+    }
+
+    /// The factor of the wheels, an offset and an error of scale, with a body of trace 1, as where a search begins.
+    fn weak() -> WeakEstimate {
+        let sensor = SensorPriors::default().with_offset(0.05).with_scale(0.02);
+        let columns: Vec<Column> =
+            [Column::new(Input, None)].into_iter().chain(sensor_columns(&sensor, 1.0)).collect();
+        let j = Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45);
+        WeakEstimate {
+            radius: 1.0,
+            columns,
+            at: Unknowns { x: coordinates(&j), c: vec![1.2, 0.01, -0.02, 0.03, 0.015] },
+            moved: 0.0,
+            root: Form::identity(),
+            stacked: None,
+            doubt: Form::zeros(),
+            squares: 0.0,
+            rows: 0,
+            parts: Vec::new(),
+        }
+    }
+
+    /// Readings for 16 s, of which the middle is at 9 s, that are those of a motion but for so much noise.
+    fn stretch(weak: &WeakEstimate, noise: f64) -> Stretch {
+        let times: Vec<f64> = (0..=128).map(|k| 1.0 + 0.125 * f64::from(k)).collect();
+        let mut stretch = Stretch::new(times, vec![Vector3::zeros(); 129]);
+        let all = problem(weak, &stretch);
+        let readings = all.left(&model(weak), f64::INFINITY).unwrap().remove(0).readings;
+        let mut random = Random::new(5);
+        stretch.rates = readings.iter().map(|rate| rate + random.normal_vector() * noise).collect();
+        stretch
+    }
+
+    fn problem<'a>(weak: &'a WeakEstimate, stretch: &'a Stretch) -> Problem<'a> {
+        let (wheel, start) = (Vector3::new(0.05, 0.1, -0.02), Vector3::new(0.5, 0.8, -0.4));
+        let track = Track { stretch, middle: 9.0, wheel, start, weight: 0.5 };
+        let pull = DMatrix::from_fn(10, 10, |i, k| if i == k { 3.0 } else { 0.25 });
+        Problem { tracks: vec![track], weak, variance: 1e-6, pull }
+    }
+
+    fn model(weak: &WeakEstimate) -> Model {
+        Model { at: weak.at.clone(), starts: vec![Vector3::new(0.5, 0.8, -0.4)] }
+    }
+
+    /// With one of its numbers larger by so much: five columns, five coordinates and a start.
+    fn moved(from: &Model, k: usize, by: f64) -> Model {
+        let mut model = from.clone();
+        match k {
+            0..5 => model.at.c[k] += by,
+            5..10 => model.at.x[k - 5] += by,
+            _ => model.starts[0][k - 10] += by,
+        }
+        model
+    }
+
+    /// The squares of a stretch fall by twice their gradient, and about the motion itself they are the quadratic form of their matrix.
+    #[test]
+    fn sums_of_wheels_are_those_of_differences() {
+        let weak = weak();
+        let exact = stretch(&weak, 0.0);
+        let of_exact = problem(&weak, &exact);
+        let here = model(&weak);
+        let squares = |all: &Problem<'_>, at: &Model| all.left(at, 3.0).unwrap()[0].squares;
+        let form = of_exact.sums(&here, 3.0).unwrap().remove(0);
+        // both ends of the window belong to it
+        assert_eq!((form.samples, form.squares), (49, 0.0));
+        let noisy = stretch(&weak, 0.05);
+        let of_noisy = problem(&weak, &noisy);
+        let sums = of_noisy.sums(&here, 3.0).unwrap().remove(0);
+        assert!((sums.squares / squares(&of_noisy, &here) - 1.0).abs() < 1e-12);
+        let h = 1e-5;
+        for k in 0..13 {
+            let [above, below] = [h, -h].map(|h| squares(&of_noisy, &moved(&here, k, h)));
+            let slope = (above - below) / (2.0 * h);
+            let near = 1e-3 * sums.gradient.amax();
+            assert!((slope + 2.0 * sums.gradient[k]).abs() < near, "{k}: {slope} {}", sums.gradient[k]);
+            for other in 0..=k {
+                let both = |by: f64| squares(&of_exact, &moved(&moved(&here, k, h), other, by));
+                let mixed = (both(h) - both(-h)) / (4.0 * h * h);
+                assert_eq!(form.matrix[(k, other)], form.matrix[(other, k)]);
+                let apart = (mixed - form.matrix[(k, other)]).abs();
+                assert!(apart < 1e-2 * form.matrix.amax(), "{k} {other}: {mixed}");
+            }
+        }
+    }
+
+    /// Priors of the columns and the pull of the weak estimate are squares beside those of the readings; damping grows the diagonal.
+    #[test]
+    fn priors_and_pull_are_squares_beside_the_readings() {
+        let weak = weak();
+        let exact = stretch(&weak, 0.0);
+        let all = Problem { variance: 0.25, ..problem(&weak, &exact) };
+        let here = (0..10).fold(model(&weak), |at, k| moved(&at, k, 0.01 * (k as f64 - 4.5)));
+        for is_pulled in [true, false] {
+            let (information, gradient) = all.reduced(&[], &here, 0.0, is_pulled).unwrap();
+            // priors of 0.05 of the offset and of 0.02 of the scale, none of the wheels
+            let priors = [0.0, 400.0, 400.0, 400.0, 2500.0];
+            for k in 0..10 {
+                let beside = |by: f64| all.beside(&moved(&here, k, by), is_pulled);
+                let slope = (beside(0.125) - beside(-0.125)) / 0.25;
+                let near = 1e-9 * gradient.amax().max(1.0);
+                assert!((slope + 2.0 * gradient[k]).abs() < near, "{k}: {slope} {}", gradient[k]);
+                let own = priors.get(k).map_or(0.0, |prior| 0.25 * prior);
+                let expected = own + if is_pulled { 3.0 } else { 0.0 };
+                assert!((information[(k, k)] - expected).abs() < 1e-9, "{k}");
+            }
+            let (damped, _) = all.reduced(&[], &here, 0.5, is_pulled).unwrap();
+            assert!((damped[(1, 1)] / information[(1, 1)] - 1.5).abs() < 1e-12);
+            assert_eq!(damped[(1, 2)], information[(1, 2)]);
+        }
+    }
+
+    /// From near it the search comes to rest at the motion of the readings, and one step tells what it gains.
+    #[test]
+    fn a_search_ends_at_the_motion_of_the_readings() {
+        let weak = weak();
+        let exact = stretch(&weak, 0.0);
+        // priors that say next to nothing
+        let all = Problem { variance: 1e-16, ..problem(&weak, &exact) };
+        let off = (0..13).fold(model(&weak), |at, k| moved(&at, k, if k % 2 == 0 { 1e-5 } else { -1e-5 }));
+        let sums = all.sums(&off, f64::INFINITY).unwrap();
+        let (next, gain) = all.step(&sums, &off, 0.0, false).unwrap();
+        // all of it but what the first order leaves
+        assert!((gain / sums[0].squares - 1.0).abs() < 0.05, "{gain:e} {:e}", sums[0].squares);
+        let apart = |at: &Model| {
+            let own = all.apart(at).amax();
+            own.max((at.starts[0] - all.tracks[0].start).amax())
+        };
+        assert!(apart(&next) < 0.2 * apart(&off), "{:e}", apart(&next));
+        // windows that double go from there too, the estimate off by as much
+        let near = WeakEstimate { at: off.at.clone(), ..self::weak() };
+        let grown = Problem { weak: &near, variance: 1e-16, ..problem(&weak, &exact) }.grow().unwrap();
+        assert!(apart(&grown) < 1e-8, "{:e}", apart(&grown));
+        let (found, is_still) = all.settle(off, f64::INFINITY, false).unwrap();
+        assert!(is_still && apart(&found) < 1e-8, "{:e}", apart(&found));
+        // the wheels turn the momentum by 1.2 of theirs over the smallest moment
+        let fastest = all.fastest(&all.tracks[0], &model(&weak));
+        let expected = 1.2 * Vector3::new(0.05, 0.1, -0.02).norm() / eigen(tensor(&weak.at.x)).0[0];
+        assert!((fastest / expected - 1.0).abs() < 1e-12);
     }
 }
