@@ -83,4 +83,19 @@ mod tests {
         assert_eq!(split(&[0.0, 1.0, 2.0, 11.0, 12.0]), [0..3, 3..5]);
         assert_eq!(split(&[0.0]).len(), 1);
     }
+
+    /// A gap is more than eight median intervals, a jump more than eight median turns off both neighbours.
+    #[test]
+    fn gaps_and_jumps_begin_beyond_eight_medians() {
+        let times = |gap: f64| [0.0, 1.0, 2.0, 2.0 + gap, 3.0 + gap];
+        assert_eq!((split(&times(8.0)).len(), split(&times(8.1)).len()), (1, 2));
+        // √(0.05² + 0.35²) = 0.354 and √(0.05² + 0.45²) = 0.453 off both, about eight turns of 0.05
+        for (off, expected) in [(0.35, vec![]), (0.45, vec![7])] {
+            let mut attitudes = spin(40);
+            attitudes[7] = attitudes[7] * Quat::exponential(Vec3([off, 0.0, 0.0]));
+            assert_eq!(jumps(&attitudes), expected, "{off}");
+        }
+        assert!((turns(&spin(3))[1] - 0.05).abs() < 1e-13);
+        assert!(jumps(&spin(2)).is_empty() && split(&[]).is_empty());
+    }
 }

@@ -77,3 +77,56 @@ impl Misread {
         followed.cost() + 2.0 * followed.dof[1] * libm::log1p(self.scale)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::likelihood::choice::{Acting, Moved};
+    use crate::likelihood::descent::Levels;
+    use crate::likelihood::growth::Followed;
+    use crate::likelihood::track::Model;
+    use crate::physical::coordinates::Coordinates;
+    use polhode::rotation::Quat;
+
+    fn misread(error: RateError, offset: Vector3<f64>, scale: f64) -> Misread {
+        Misread { error, offset, scale, gain: 0.0, spread: Form::zeros() }
+    }
+
+    /// Readings (1 + s) ω + b are taken back to ω, and an error that is found after another is taken out in one with it.
+    #[test]
+    fn errors_that_are_taken_out_are_none() {
+        let (offset, rate) = (Vector3::new(0.5, -0.25, 1.0), Vector3::new(1.0, 2.0, -3.0));
+        let track = |rates| Track { times: vec![0.0], attitudes: Vec::new(), rates, used: vec![true] };
+        let out = |of: &Misread, rate: Vector3<f64>| of.taken_out(&[track(vec![rate])])[0].rates[0];
+        let both = misread(RateError::Scale, offset, 0.25);
+        assert!((out(&both, rate * 1.25 + offset) - rate).norm() < 1e-15);
+        // 1.25 · 1.2 = 1 + 0.5
+        let scale = misread(RateError::Scale, Vector3::zeros(), 0.25).further(&[0.2]);
+        assert!((scale.scale - 0.5).abs() < 1e-15 && scale.offset == Vector3::zeros());
+        assert!((out(&scale, rate * 1.5) - rate).norm() < 1e-14);
+        let added = misread(RateError::Offset, offset, 0.0).further(&[0.25, 0.5, -2.0]);
+        assert_eq!((added.offset, added.scale), (Vector3::new(0.75, 0.25, -1.0), 0.0));
+    }
+
+    /// Of readings that are larger by one half every deviation of the rates is, too: each counts log 1.5 more, twice over.
+    #[test]
+    fn the_likelihood_is_that_of_the_readings() {
+        let (x, alignment) = (Coordinates::zeros(), Quat::identity());
+        let followed = Followed {
+            model: Model { x, alignment, is_aligned: true, drag: None, starts: Vec::new() },
+            is_still: true,
+            tracks: Vec::new(),
+            levels: Levels { attitude: 0.5, rate: 0.25 },
+            dof: [10.0, 6.0],
+            deviation: 0.0,
+            beyond: Vec::new(),
+        };
+        let moved = Moved { followed, alternatives: None };
+        let found = Found { moved, torque: Acting::Nothing, gain: None, without: None, models: Vec::new() };
+        // −10 log 4 − 6 log 16 = −44 log 2
+        let plain = -44.0 * core::f64::consts::LN_2;
+        let cost = |scale: f64| misread(RateError::Scale, Vector3::zeros(), scale).cost(&found);
+        assert!((cost(0.0) - plain).abs() < 1e-13);
+        assert!((cost(0.5) - plain - 12.0 * libm::log(1.5)).abs() < 1e-13);
+    }
+}

@@ -89,4 +89,39 @@ mod tests {
         });
         assert_eq!(added(&spread, &moved), expected);
     }
+
+    /// Samples that turned with a sensor from the middle of their times on are those that stood still once they are turned back.
+    #[test]
+    fn samples_are_turned_back_by_their_part_of_the_turn() {
+        let (turn, times) = (Vector3::new(0.3, -0.1, 0.2), vec![-1.0, 0.0, 0.5, 3.0]);
+        let still = Track {
+            attitudes: times.iter().map(|t| Quat::exponential(Vec3([0.2 * t, 0.5, -0.3]))).collect(),
+            rates: times.iter().map(|t| Vector3::new(0.5, -0.2 * t, 1.0)).collect(),
+            used: vec![true; 4],
+            times,
+        };
+        for is_of_rates in [true, false] {
+            let mut moved = still.clone();
+            // a quarter of the turn for each second of four
+            for (k, t) in still.times.iter().enumerate() {
+                let by = Quat::exponential(Vec3::from(turn * (0.25 * t)));
+                if is_of_rates {
+                    moved.rates[k] = by.rotate_back(Vec3::from(moved.rates[k])).into();
+                } else {
+                    moved.attitudes[k] = moved.attitudes[k] * by;
+                }
+            }
+            let back = turned_back(&moved, turn, is_of_rates);
+            for k in 0..4 {
+                let apart = (still.attitudes[k].conjugate() * back.attitudes[k]).logarithm().norm();
+                assert!(apart < 1e-14 && (back.rates[k] - still.rates[k]).norm() < 1e-14, "{k}");
+            }
+            let apart = if is_of_rates {
+                (moved.rates[3] - still.rates[3]).norm()
+            } else {
+                (still.attitudes[3].conjugate() * moved.attitudes[3]).logarithm().norm()
+            };
+            assert!(apart > 0.1, "{is_of_rates}");
+        }
+    }
 }

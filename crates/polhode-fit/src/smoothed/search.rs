@@ -556,4 +556,69 @@ mod tests {
             gain_of_noise(&tracks, free.at.clone(), &[], free.paths.clone(), noise(TorqueNoise::Fitted));
         assert!(gain.unwrap() > 20.0, "{gain:?}");
     }
+
+    /// Torque noise begins where each sample is heard for half a radian: twice the longest of reach over samples, over its fourth power.
+    #[test]
+    fn the_search_begins_with_samples_that_stand_alone() {
+        let track = |times: &[f64]| Track {
+            times: times.to_vec(),
+            attitudes: vec![Quat::identity(); times.len()],
+            rates: Vec::new(),
+            used: vec![true; times.len()],
+        };
+        let tracks = [track(&[-1.0, 0.0, 0.5, 1.0]), track(&[-3.0, -1.0, 1.0, 2.0])];
+        // 2 · (3/4) · 16
+        assert_eq!(boundless(&tracks), Level { torque: 24.0, shape: 0 });
+    }
+
+    /// A step is halved until a tenth of the smallest moment is left, nearly.
+    #[test]
+    fn a_step_leaves_a_tenth_of_the_smallest_moment() {
+        let search = Search {
+            columns: &[],
+            noise: noise(TorqueNoise::None),
+            tracks: Vec::new(),
+            at: Unknowns::at(Coordinates::zeros(), &[]),
+            paths: Vec::new(),
+            level: Level { torque: 0.0, shape: 0 },
+        };
+        // of a sphere the moment zz falls from 1/3 to what is asked for
+        let to = |zz: f64| Coordinates::new(0.0, (1.0 / 3.0 - zz) * 1.5_f64.sqrt(), 0.0, 0.0, 0.0);
+        assert!((tensor(&to(0.2))[(2, 2)] - 0.2).abs() < 1e-15);
+        for (zz, share) in [(0.2, 1.0), (0.0332, 1.0), (0.0328, 0.5), (-0.2, 0.5), (-0.5, 0.25)] {
+            assert_eq!(search.room(&to(zz)), share, "{zz}");
+        }
+    }
+
+    /// Changes of the rates count from one time to the next that is a radian later, with what torque noise made of them; what is left over
+    /// at the end does not.
+    #[test]
+    fn the_share_of_torque_noise_is_that_of_changes_within_a_radian() {
+        let times = vec![0.0, 0.4, 0.8, 1.2, 1.5, 2.3, 2.4];
+        let track = Track { attitudes: Vec::new(), rates: Vec::new(), used: vec![true; 7], times };
+        let (x, y) = (Vector3::<f64>::x(), Vector3::<f64>::y());
+        // 1 + 1 + 2 and 3 + 0 along x, beside ½ + ½ along y and 1 − 2 along x by noise
+        let changes = [(1.0, y * 0.5), (1.0, y * 0.5), (2.0, y * 0.0), (3.0, x), (0.0, x * -2.0), (9.0, x)];
+        let found = Found {
+            columns: Vec::new(),
+            at: Unknowns::at(Coordinates::zeros(), &[]),
+            paths: Vec::new(),
+            tracks: vec![track],
+            level: Level { torque: 1.0, shape: 0 },
+            variance: 1.0,
+            information: DMatrix::identity(5, 5) * 4.0,
+            of_each: Vec::new(),
+            without: Vec::new(),
+            whitened: Vec::new(),
+            likelihood: 0.0,
+            dof: 1.0,
+            changes: vec![changes.map(|(size, noise)| [x * size, noise]).to_vec()],
+            is_still: true,
+        };
+        // (1 + 1)/(16 + 9)
+        assert!((found.unexplained() - 0.08).abs() < 1e-15);
+        assert!((found.covariance().unwrap() - Form::identity() * 0.25).amax() < 1e-15);
+        let none = Found { changes: vec![Vec::new()], ..found };
+        assert_eq!(none.unexplained(), 0.0);
+    }
 }
