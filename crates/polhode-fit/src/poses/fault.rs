@@ -123,3 +123,30 @@ fn three([a, b, c]: &[f64; 3]) -> String {
 fn four(x: f64) -> Shown {
     Shown(format!("{x:.4}").parse().unwrap_or(x))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rates both ways round, how much the body must turn, and how many attitudes a second would tell follow from the numbers.
+    #[test]
+    fn faults_of_attitudes_say_their_numbers() {
+        let says = |fault: PoseFault, parts: &[&str]| {
+            let text = fault.to_string();
+            assert!(parts.iter().all(|part| text.contains(part)), "{text}: {parts:?}");
+        };
+        let half = PoseFault::HalfTurn { source_name: "a.csv".into(), sample: 7, turn: 3.0, step: 0.5 };
+        // 2 π − 3 = 3.28319, over 0.5 and that over 2.83
+        says(half, &["sample 7 of a.csv", "3.283 rad", "6.000e0 and 6.566e0", "2.320e0 attitudes"]);
+        says(PoseFault::NoTurn { turn: 0.02, noise: 0.01 }, &["2.00e-2 rad in all", "more than 5.00e-2 rad"]);
+        let not_free = |noise| PoseFault::NotFree { residual: 0.04, noise, turn: 1.5 };
+        says(not_free(Some(0.01)), &["4.00e-2 rad (root", "noise is 1.00e-2 rad", "(1.50 rad as read)"]);
+        assert!(!not_free(None).to_string().contains("their noise"));
+        let (as_read, inverse) = ([0.2, 0.3, 0.5], [0.1, 0.4, 0.5]);
+        let direction = |gain| PoseFault::Direction { as_read, inverse, gain };
+        says(direction(3.0), &["0.2 : 0.3 : 0.5", "body 0.1 : 0.4 : 0.5", "of the first higher by 3.0"]);
+        says(direction(-3.0), &["of the second higher by 3.0"]);
+        says(PoseFault::Inverted { inverse: [0.12348, 0.4, 0.5], gain: 120.4 }, &["0.1235 : 0.4", "by 120)"]);
+        says(PoseFault::Scale { scale: 1.5 }, &["1.5000 times"]);
+    }
+}

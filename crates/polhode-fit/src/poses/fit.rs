@@ -259,3 +259,61 @@ fn only_of_rates(poses: &Poses, settings: &Settings) -> Result<(), FitError> {
     let given = others.into_iter().chain(sensor).find(|(_, value)| value.is_some());
     given.map_or(Ok(()), |(name, _)| Err(PoseFault::OnlyRates { name }.into()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::sensor::SensorPriors;
+    use nalgebra::{UnitQuaternion, Vector3};
+
+    /// A density (rad/s²)² s is over the third power of the unit of the rates; the noise of attitudes is an angle.
+    #[test]
+    fn torque_noise_goes_with_the_third_power_of_the_rate() {
+        let given = Settings::default().with_torque_noise(TorqueNoise::Given(8e-6)).with_attitude_noise(0.25);
+        let Noise { attitude, torque: TorqueNoise::Given(density) } = noise_of(&given, 2.0) else { panic!() };
+        assert!(attitude == Some(0.25) && (density / 1e-6 - 1.0).abs() < 1e-15);
+        assert_eq!(noise_of(&Settings::default(), 2.0).torque, TorqueNoise::Fitted);
+    }
+
+    /// Torques without a closed form, and torque noise of a level, need filter and smoother, which take no rates; settings of test functions
+    /// have no meaning, nor has noise of rates that are not there.
+    #[test]
+    fn what_attitudes_have_no_use_for_is_named() {
+        let times: Vec<f64> = (0..4).map(f64::from).collect();
+        let turned = |t: &f64| UnitQuaternion::from_scaled_axis(Vector3::z() * *t);
+        let attitudes: Vec<UnitQuaternion<f64>> = times.iter().map(turned).collect();
+        let bare = Poses::new("a", &times, &attitudes).unwrap();
+        let both = Poses::with_rates("a", &times, &attitudes, &[Vector3::z(); 4]).unwrap();
+        let plain = Settings::default;
+        for (torque, needs) in [
+            (TorqueModel::None, false),
+            (TorqueModel::Auto, false),
+            (TorqueModel::Drag, false),
+            (TorqueModel::Constant, false),
+            (TorqueModel::Drag3, true),
+            (TorqueModel::Quadratic, true),
+        ] {
+            let settings = plain().with_torque(torque);
+            assert_eq!(needs_smoother(&settings), needs, "{torque}");
+            assert_eq!(only_of_rates(&bare, &settings), Ok(()), "{torque}");
+            let expected = if needs { Err(FitError::Poses(PoseFault::Torque)) } else { Ok(()) };
+            assert_eq!(only_of_rates(&both, &settings), expected, "{torque}");
+        }
+        assert!(needs_smoother(&plain().with_torque_noise(TorqueNoise::Given(1e-6))));
+        assert!(!needs_smoother(&plain().with_torque_noise(TorqueNoise::None)));
+        let named = |poses: &Poses, settings: &Settings| match only_of_rates(poses, settings) {
+            Err(FitError::Poses(PoseFault::OnlyRates { name })) => name,
+            other => panic!("{other:?}"),
+        };
+        let skew = SensorPriors::default().with_skew(1e-3);
+        for (settings, name) in [
+            (plain().with_radius(1.0), "the radius of test functions"),
+            (plain().with_quantum(0.1), "the quantum of the rates"),
+            (plain().with_sensor(skew), "the deviation of the skew"),
+        ] {
+            assert_eq!((named(&bare, &settings), named(&both, &settings)), (name, name));
+        }
+        assert_eq!(named(&bare, &plain().with_noise(0.1)), "the noise of the rates");
+        assert_eq!(only_of_rates(&both, &plain().with_noise(0.1)), Ok(()));
+    }
+}

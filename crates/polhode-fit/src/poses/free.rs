@@ -293,3 +293,181 @@ fn turned(x: &Coordinates, turn: &Quat<f64>) -> Coordinates {
     let r = Matrix3::from_columns(&columns);
     coordinates(&(r * tensor(x) * r.transpose()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::likelihood::track::Model;
+    use nalgebra::UnitQuaternion;
+
+    fn about_z(angle: f64) -> Quat<f64> {
+        Quat::exponential(Vec3([0.0, 0.0, angle]))
+    }
+
+    /// Of n numbers a misfit of 1 + 5 √(2 · 5/n) may be chance.
+    #[test]
+    fn few_numbers_leave_more_to_chance() {
+        assert_eq!([10.0, 40.0].map(by_chance), [6.0, 3.5]);
+        assert_eq!(by_chance(0.0), by_chance(1.0));
+    }
+
+    /// The noise of three components is taken off the mean square of the rates; what does not turn has no unit.
+    #[test]
+    fn the_unit_is_the_rate_without_its_noise() {
+        let node = |size: f64| Node {
+            time: 6.0,
+            attitude: Quat::identity(),
+            rate: Vector3::x() * size,
+            variance: 0.125,
+        };
+        // (9 + 16)/2 − 3 · 0.125 · 4
+        let nodes = [vec![node(3.0)], vec![node(-4.0)]];
+        assert!((unit_of(&nodes, 2.0).unwrap() - 11_f64.sqrt()).abs() < 1e-14);
+        assert!(unit_of(&nodes, 20.0).is_none() && unit_of(&[], 1.0).is_none());
+        let scaled = in_units(&node(3.0), 2.0);
+        assert_eq!((scaled.time, scaled.rate.x, scaled.variance), (12.0, 1.5, 0.03125));
+    }
+
+    /// Attitudes differ from the first of their stretch by more than five deviations of the noise, in the root of the mean square.
+    #[test]
+    fn what_turns_by_its_noise_alone_is_refused() {
+        let of = |first: f64| (vec![0.0, 1.0], vec![about_z(first), about_z(first + 0.1)]);
+        let stretches = [of(0.0), of(1.0)];
+        // the root of 0.01/2 is 0.0707
+        assert_eq!(does_turn(&stretches, 0.0141), Ok(()));
+        let refused = does_turn(&stretches, 0.0142);
+        let Err(FitError::Poses(PoseFault::NoTurn { turn, noise: 0.0142 })) = refused else {
+            panic!("{refused:?}")
+        };
+        assert!((turn - 0.1 * 0.5_f64.sqrt()).abs() < 1e-14);
+    }
+
+    /// A quarter turn about z takes x to y and y to −x.
+    #[test]
+    fn tensors_turn_with_their_axes() {
+        let j = Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45);
+        let expected = Matrix3::new(0.35, -0.01, -0.03, -0.01, 0.2, -0.02, -0.03, -0.02, 0.45);
+        let found = tensor(&turned(&coordinates(&j), &about_z(core::f64::consts::FRAC_PI_2)));
+        assert!((found - expected).amax() < 1e-14, "{found}");
+    }
+
+    /// Rates in units of less than 1.25 times those of the attitudes, or over 1.25, are of another size beyond that.
+    #[test]
+    fn rates_of_another_size_are_refused() {
+        let rates = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let times = [0.0, 1.0, 2.0];
+        let node = |k: usize| Node {
+            time: times[k],
+            attitude: Quat::identity(),
+            rate: rates[k],
+            variance: 0.0,
+        };
+        let nodes = [(0..3).map(node).collect::<Vec<Node>>()];
+        let stretches = [(times.to_vec(), vec![Quat::identity(); 3])];
+        let of = |scale: f64| {
+            let own = [rates.map(|rate| rate * scale).to_vec()];
+            alignment_of(&nodes, &stretches, &own, 0.1)
+        };
+        for scale in [0.81, 1.0, 1.24] {
+            let found = of(scale).unwrap().unwrap();
+            assert!((found.scale - scale).abs() < 1e-14 && found.turn.v.norm() < 1e-13, "{scale}");
+        }
+        for wrong in [0.79, 1.26] {
+            let Err(FitError::Poses(PoseFault::Scale { scale })) = of(wrong) else { panic!("{wrong}") };
+            assert!((scale - wrong).abs() < 1e-14);
+        }
+        let Err(FitError::Poses(fault)) = of(-1.0) else { panic!() };
+        assert_eq!(fault, PoseFault::Mirrored);
+        assert!(alignment_of(&nodes, &stretches, &[Vec::new()], 0.1).unwrap().is_none());
+    }
+
+    fn poses(angles: &[f64]) -> Poses {
+        let times: Vec<f64> = (0..angles.len()).map(|k| 3.0 + 0.5 * k as f64).collect();
+        let attitudes: Vec<UnitQuaternion<f64>> = angles.iter().map(|angle| about_z(*angle).into()).collect();
+        Poses::new("a", &times, &attitudes).unwrap()
+    }
+
+    /// A frame that jumps is left out, and its neighbours become neighbours; times count from the middle of all samples.
+    #[test]
+    fn a_look_leaves_out_what_jumps() {
+        let mut angles: Vec<f64> = (0..21).map(|k| 0.05 * f64::from(k)).collect();
+        angles[7] += 1.0;
+        let poses = poses(&angles);
+        let found = looked_at(&poses, &Settings::default()).unwrap();
+        assert_eq!((found.jumps, found.stretches[0].0.len(), &found.used[..]), (1, 20, &[(0, 8.0)][..]));
+        assert!((found.largest_turn - 0.1).abs() < 1e-13);
+        assert_eq!((found.stretches[0].0[0], found.stretches[0].0[7]), (-5.0, -1.0));
+        let kept = looked_at(&poses, &Settings::default().with_leave_out_spikes(false)).unwrap();
+        assert!(kept.jumps == 0 && (kept.largest_turn - 1.05).abs() < 1e-13);
+    }
+
+    /// More than nine tenths of half a turn between neighbours are refused by the sample before, however few samples stand between.
+    #[test]
+    fn half_a_turn_is_refused_by_its_sample() {
+        let of = |turn: f64| {
+            let angle = |k: u8| 0.05 * f64::from(k) + if k < 9 { 0.0 } else { turn };
+            looked_at(&poses(&(0..16).map(angle).collect::<Vec<f64>>()), &Settings::default())
+        };
+        assert!(of(2.77).is_ok_and(|found| (found.largest_turn - 2.82).abs() < 1e-12));
+        let Err(FitError::Poses(fault)) = of(2.79) else { panic!() };
+        let PoseFault::HalfTurn { sample: 9, turn, step: 0.5, .. } = fault else { panic!("{fault}") };
+        assert!((turn - 2.84).abs() < 1e-12);
+        let Err(FitError::TooFewSamples { samples: 7, segments: 1, longest: 7, .. }) =
+            looked_at(&poses(&[0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]), &Settings::default())
+        else {
+            panic!()
+        };
+    }
+
+    /// What is left is compared with the noise of attitudes where there are any, and with the one that is given before that of neighbours.
+    #[test]
+    fn a_misfit_is_over_the_noise_that_is_known() {
+        let free = |level: f64, local_noise: Option<f64>, has_attitudes: bool| {
+            let attitudes = if has_attitudes { vec![Quat::identity()] } else { Vec::new() };
+            let track = Track { times: vec![0.0], attitudes, rates: vec![Vector3::x()], used: vec![true] };
+            let (x, alignment) = (Coordinates::zeros(), Quat::identity());
+            let followed = Followed {
+                model: Model { x, alignment, is_aligned: false, drag: None, starts: Vec::new() },
+                is_still: true,
+                tracks: vec![track],
+                levels: Levels { attitude: level, rate: 0.5 * level },
+                dof: [4.0, 6.0],
+                deviation: 0.0,
+                beyond: Vec::new(),
+            };
+            let read = Read {
+                unit: 2.0,
+                used: Vec::new(),
+                local_noise,
+                rate_noise: None,
+                largest_turn: 0.0,
+                jumps: 0,
+                has_rates: true,
+            };
+            Free {
+                followed,
+                torque: Acting::Nothing,
+                gain: None,
+                without: None,
+                models: Vec::new(),
+                alternatives: None,
+                moving: None,
+                misread: None,
+                read,
+                steady: None,
+            }
+        };
+        let (plain, given) = (Settings::default(), Settings::default().with_attitude_noise(0.5));
+        assert_eq!(free(1.0, Some(0.25), true).misfit(&plain), Some(16.0));
+        assert_eq!(free(1.0, Some(0.25), true).misfit(&given), Some(4.0));
+        assert!([None, Some(0.0)].iter().all(|noise| free(1.0, *noise, true).misfit(&plain).is_none()));
+        // 0.5 in units of 2 rad/s over 0.25 rad/s
+        let rates = free(1.0, Some(0.25), false);
+        assert_eq!((rates.misfit(&plain.clone().with_noise(0.25)), rates.misfit(&plain)), (Some(16.0), None));
+        // ten numbers scatter up to 6
+        for (level, is_explained) in [(1.22, true), (1.23, false)] {
+            assert_eq!(free(level, None, true).is_explained(&given), is_explained, "{level}");
+        }
+        assert!(free(9.0, None, true).is_explained(&plain));
+    }
+}
