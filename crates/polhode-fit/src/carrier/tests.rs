@@ -7,6 +7,7 @@ use polhode::record::{Record, Segment};
 
 use crate::carrier::error::CarrierError;
 use crate::carrier::law::{bodies, is_held, is_physical};
+use crate::carrier::least::least;
 use crate::carrier::proof::{ProofBody, parallel_axis};
 use crate::carrier::records::{Attached, CarrierRecords};
 use crate::carrier::start::{Alone, Start, start};
@@ -136,6 +137,17 @@ fn joint_equations_are_those_of_differences() {
         let h = 1e-6;
         let slope = (moved(h) - moved(-h)) / (2.0 * h);
         assert!((slope - gradient[k]).abs() < 1e-4 * gradient.amax(), "{k}: {slope:e} {:e}", gradient[k]);
+    }
+    // where the search ends no further round moves the answer, and the squares are least
+    let (best, there) = least(&system, z.clone(), None).unwrap();
+    assert!((&there.root * (&there.centre - &best)).norm() <= 1e-6);
+    for k in 0..z.len() {
+        let around = [1e-3, -1e-3].map(|by| {
+            let mut off = best.clone();
+            off[k] += by;
+            squares(&off)
+        });
+        assert!(around.iter().all(|other| *other > squares(&best)) && squares(&best) < squares(&z), "{k}");
     }
     // of a drag that acts no part is held at zero; a shape far off would ask for one that gives energy
     assert!(

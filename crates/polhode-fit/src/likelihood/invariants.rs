@@ -129,4 +129,19 @@ mod tests {
         assert!((features(&a).dot(&features(&b)) - a.dot(&b) * a.dot(&b)).abs() < 1e-15);
         assert!((symmetric(&features(&a)) - a * a.transpose()).amax() < 1e-15);
     }
+
+    /// Stretches of one body have energies and momenta of their own.
+    #[test]
+    fn several_stretches_tell_one_tensor() {
+        let j = Matrix3::new(2.0, 0.3, -0.1, 0.3, 1.7, 0.2, -0.1, 0.2, 1.1) / 4.8;
+        let body = Inertia::from_tensor(j).unwrap();
+        let all = [[0.3, -0.8, 0.6], [1.0, 0.7, -0.2], [-0.1, 0.4, 0.9]].map(|start| {
+            let motion =
+                FreeMotion::from_omega(&body, UnitQuaternion::identity(), Vector3::from(start)).unwrap();
+            let at = |k: u32| motion.omega_at(3.0 * f64::from(k)).unwrap();
+            (0..9).map(at).collect::<Vec<Vector3<f64>>>()
+        });
+        let found = tensors_of(&all.each_ref().map(Vec::as_slice));
+        assert!(found.iter().any(|x| (tensor(x) - j).norm() < 1e-8), "{found:?}");
+    }
 }

@@ -173,4 +173,16 @@ mod tests {
             }
         }
     }
+
+    /// Without drag the clock is that of time, and falls behind by half of its square times the drag.
+    #[test]
+    fn the_clock_without_drag_is_that_of_time() {
+        assert_eq!(clock(0.0, 3.0), (3.0, 1.0, -4.5));
+        assert_eq!(clock(0.0, -3.0), (-3.0, 1.0, -4.5));
+        // 1 − exp(−2) over a half at 4, and (4 exp(−2) − that)/0.5
+        let (s, slowed, by_k) = clock(0.5, 4.0);
+        let left = libm::exp(-2.0);
+        assert!((s - 2.0 * (1.0 - left)).abs() < 1e-15 && (slowed - left).abs() < 1e-16);
+        assert!((by_k - (8.0 * left - 4.0 * (1.0 - left))).abs() < 1e-14);
+    }
 }

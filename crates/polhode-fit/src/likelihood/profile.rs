@@ -118,6 +118,13 @@ impl Walk<'_> {
 mod tests {
     use super::*;
     use crate::likelihood::descent::Levels;
+    use crate::likelihood::growth::search;
+    use crate::likelihood::track::Track;
+    use crate::physical::coordinates::coordinates;
+    use crate::simulate::simulate;
+    use nalgebra::{Matrix3, Vector3};
+    use polhode::inertia::Inertia;
+    use polhode::num::Random;
     use polhode::rotation::Quat;
 
     /// The way off the axis of a walk counts where the quadratic form makes more than 1 of it, twice over the end of the walk.
@@ -136,5 +143,42 @@ mod tests {
         let expected = Coordinates::new(0.0, 0.0, 0.22 / END, 0.0, 0.0);
         assert!((found - expected).amax() < 1e-15, "{found}");
         assert!(walk.bend(&end(0.09)).is_none());
+    }
+
+    /// Where the likelihood is quadratic it falls by the squares of the deviations. Counted from half of the fall at the end of a walk it falls
+    /// too slowly there, and by enough half as far again: this and the middle of the way are told. Counted from more than that fall, the end
+    /// is another maximum.
+    #[test]
+    fn walks_end_where_the_likelihood_has_fallen_by_enough() {
+        let j = Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45);
+        let times: Vec<f64> = (0..200).map(|k| 0.1 * f64::from(k) - 10.0).collect();
+        let (body, begin) = (Inertia::from_tensor(j).unwrap(), Vector3::new(0.5, 0.8, -0.4));
+        let rates = simulate(&body, begin, &times, 1e-4, &mut Random::new(4)).unwrap();
+        let tracks = [Track { attitudes: Vec::new(), rates, used: vec![true; 200], times }];
+        let levels = Levels { attitude: 0.0, rate: 1e-4 };
+        let found = search(&tracks, coordinates(&j), Quat::identity(), levels, false).unwrap();
+        let (tracks, levels) = (&found.tracks[..], found.levels);
+        let problem = Problem { tracks, levels, radius: f64::INFINITY, pull: None };
+        let (sums, cost) = problem.sums(&found.model).unwrap();
+        let form = Reduced::new(&sums, None, 0.0).unwrap().of_tensor().unwrap();
+        let (values, directions) = eigen(form);
+        let direction = directions.column(0) / values[0].sqrt();
+        let walk = |raised: f64| {
+            let (information, least) = (values[0], cost + raised);
+            Walk { problem: &problem, model: &found.model, direction, information, form, least }
+        };
+        for s in [-2.0, 3.0] {
+            let (model, fall) = walk(0.0).settled(&found.model, s).unwrap();
+            assert!((fall / (s * s) - 1.0).abs() < 0.05, "{s}: {fall}");
+            assert!((model.x - found.model.x - direction * s).norm() < 0.1 * direction.norm(), "{s}");
+        }
+        assert!(walk(0.0).to_its_end().is_ok_and(|beyond| beyond.is_empty()));
+        let Ok(beyond) = walk(0.5 * END * END).to_its_end() else { panic!() };
+        assert_eq!(beyond.len(), 2);
+        for (own, share) in beyond.iter().zip([1.5, 0.75]) {
+            assert!((own - direction * share).norm() < 0.1 * direction.norm(), "{own} {direction}");
+        }
+        let Err(other) = walk(1.2 * END * END).to_its_end() else { panic!() };
+        assert!((other.x - found.model.x - direction * END).norm() < 0.1 * END * direction.norm());
     }
 }

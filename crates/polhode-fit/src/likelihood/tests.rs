@@ -202,6 +202,70 @@ fn torques_that_are_left_out_are_found_by_one_step() {
     assert_eq!(is_linear(&free, &all.constant), turn <= LINEAR, "{turn}");
 }
 
+/// Attitudes and rates without noise, under a torque, of the motions of a model that has none.
+fn exact(by: &Disturbances) -> (Vec<Track>, Model) {
+    let body = Inertia::from_tensor(tensor(&x())).unwrap();
+    let each = [(vector([0.5, 0.8, -0.4]), 16), (vector([-0.7, 0.3, 0.6]), 12)].map(|(start, span)| {
+        let times: Vec<f64> = (0..=8 * span).map(|k| 0.125 * f64::from(k) - 0.5 * f64::from(span)).collect();
+        let made = |by: &Disturbances| {
+            let quiet = Gyroscope::default();
+            simulate_poses(&body, start, &times, by, &quiet, 0.0, &mut Random::new(1)).unwrap()
+        };
+        let (moved, free) = (made(by), made(&Disturbances::default()));
+        // the middle is at time 0
+        let middle = times.len() / 2;
+        let start = Start { attitude: Quat::from(free.attitudes[middle]), rate: free.rates[middle] };
+        let attitudes = moved.attitudes.iter().map(|q| Quat::from(*q) * alignment()).collect();
+        (Track { attitudes, rates: moved.rates, used: vec![true; times.len()], times }, start)
+    });
+    let (tracks, starts) = each.into_iter().unzip();
+    (tracks, Model { x: x(), alignment: alignment(), is_aligned: true, drag: None, starts })
+}
+
+/// Of readings without noise, off by one small number alone, one step tells that number and no other of its kind.
+#[test]
+fn one_step_tells_each_small_number() {
+    let small = 1e-5;
+    let alternatives = |(tracks, model): (Vec<Track>, Model)| {
+        Alternatives::new(&tracks, &model, NOISE).unwrap()
+    };
+    let read = |change: &dyn Fn(&mut Track)| {
+        let (mut tracks, model) = exact(&Disturbances::default());
+        tracks.iter_mut().for_each(change);
+        alternatives((tracks, model))
+    };
+    // the integral of a torque is by the trapezoidal rule
+    let near = |values: &[f64], expected: &[f64]| {
+        let apart = values.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(values.len() == expected.len() && apart < 0.03 * small, "{values:?} {expected:?}");
+    };
+    let all = alternatives(exact(&Disturbances::default().with_relative_drag(small)));
+    near(&all.drag.unwrap().values, &[small]);
+    let all = read(&|track| track.rates.iter_mut().for_each(|w| *w *= 1.0 + small));
+    near(&all.of_error(RateError::Scale).unwrap().values, &[small]);
+    for axis in 0..3 {
+        let along = Vector3::ith(axis, small);
+        let all = alternatives(exact(&Disturbances::default().with_torque(along)));
+        near(&all.constant.values, along.as_slice());
+        let all = read(&|track| track.rates.iter_mut().for_each(|w| *w += along));
+        near(&all.of_error(RateError::Offset).unwrap().values, along.as_slice());
+        for is_of_rates in [true, false] {
+            let all = read(&|track| {
+                let span = track.times[track.times.len() - 1] - track.times[0];
+                for k in 0..track.times.len() {
+                    let by = Quat::exponential(Vec3::from(along * (track.times[k] / span)));
+                    if is_of_rates {
+                        track.rates[k] = by.rotate_back(track.rates[k].into()).into();
+                    } else {
+                        track.attitudes[k] = track.attitudes[k] * by;
+                    }
+                }
+            });
+            near(&all.of_axes(is_of_rates).unwrap().values, along.as_slice());
+        }
+    }
+}
+
 /// Axes of attitudes or of rates that turn evenly over each stretch are told from each other, with their turn.
 #[test]
 fn axes_that_move_are_found_by_one_step() {

@@ -214,4 +214,18 @@ mod tests {
             }
         }
     }
+
+    /// What takes more than a thousand steps of 0.03 rad is too fast to be followed, and a body that turns slowly takes a step for each 0.03 s.
+    #[test]
+    fn what_is_too_fast_is_not_followed() {
+        let at = Unknowns::at(Coordinates::from_column_slice(&X), &[]);
+        let law = Law::new(&at, &[]).unwrap();
+        let spin = |rate: f64| Start { attitude: Quat::identity(), rate: Vector3::z() * rate };
+        for (rate, duration, is) in
+            [(0.1, 29.9, true), (0.1, 30.1, false), (20.0, 1.49, true), (20.0, -1.51, false)]
+        {
+            assert_eq!(law.carry(&spin(rate), duration).is_some(), is, "{rate} {duration}");
+        }
+        assert!(law.carry(&spin(f64::NAN), 1.0).is_none() && law.carry(&spin(1.0), f64::NAN).is_none());
+    }
 }
