@@ -145,4 +145,37 @@ mod tests {
             assert!((0.5..2.0).contains(&(off / stated)), "{off:e} {stated:e}");
         }
     }
+
+    /// The fourth divided difference of five attitudes leaves of one that is off what its weight is among all: of even times 1, −4, 6, −4, 1,
+    /// whose squares are 70, of 0, 1, 3, 4 and 5 s 2, −5, 10, −10, 3, whose squares are 238.
+    #[test]
+    fn noise_is_what_the_fourth_difference_leaves() {
+        let even = ([0.0, 0.5, 1.0, 1.5, 2.0], [1.0, -4.0, 6.0, -4.0, 1.0], 70.0);
+        let uneven = ([0.0, 1.0, 3.0, 4.0, 5.0], [2.0, -5.0, 10.0, -10.0, 3.0], 238.0);
+        for (times, weights, squares) in [even, uneven] {
+            for (k, weight) in weights.into_iter().enumerate() {
+                let off = |i: usize| Quat::exponential(Vec3([0.0, if i == k { 0.01 } else { 0.0 }, 0.0]));
+                let found = noise(&[(times.to_vec(), (0..5).map(off).collect())]).unwrap();
+                let expected = f64::abs(weight) * 0.01 / f64::sqrt(3.0 * squares);
+                assert!((found / expected - 1.0).abs() < 1e-12, "{k}: {found:e} {expected:e}");
+            }
+        }
+    }
+
+    /// Widths double from two intervals of the densest stretch until the body turns by a radian; where it never does the longest is one.
+    #[test]
+    fn widths_double_to_a_radian() {
+        let turning = |rate: f64, step: f64, count: u32| {
+            let times: Vec<f64> = (0..count).map(|k| step * f64::from(k)).collect();
+            let turned = |t: &f64| Quat::exponential(Vec3([0.0, rate * t, 0.0]));
+            let attitudes: Vec<Quat<f64>> = times.iter().map(turned).collect();
+            (times, attitudes)
+        };
+        // of 2/64 · 1, 2, 4, 8 and 16 the last takes 1.1 rad
+        let dense = turning(2.2, 1.0 / 64.0, 320);
+        assert_eq!(super::width(core::slice::from_ref(&dense), 0.0), Some(0.5));
+        assert_eq!(super::width(&[turning(2.2, 0.25, 20), dense], 0.0), Some(0.5));
+        assert_eq!(super::width(&[turning(0.01, 0.25, 17)], 0.0), Some(4.0));
+        assert!(super::width(&[(vec![1.0], vec![Quat::identity()])], 0.0).is_none());
+    }
 }
