@@ -82,7 +82,8 @@ mod tests {
             (1.0 / 3.0, [3.0 / 7.0, 1.0 / 7.0]),
             (10.0, [11.0 / 23.0, 1.0 / 23.0]),
         ] {
-            let found = crate::physical::coordinates::tensor(&tensor_of(&[nodes.clone()], noise).unwrap());
+            let x = tensor_of(core::slice::from_ref(&nodes), noise).unwrap();
+            let found = crate::physical::coordinates::tensor(&x);
             let expected = Matrix3::from_diagonal(&Vector3::new(first, first, third));
             assert!((found - expected).amax() < 1e-12, "{noise}: {found}");
         }
