@@ -127,6 +127,50 @@ fn what_contradicts_a_calibration_is_said() {
     assert!(matches!(none.warnings[..], [WheelWarning::NoWheel { .. }]), "{:?}", none.warnings);
 }
 
+/// A unit of mass is that of the moment alone; in a unit of time a quarter as long rates are a quarter and their squares over the third power
+/// of that, a density of accelerations, a sixty-fourth.
+#[test]
+fn a_calibration_goes_with_its_units() {
+    let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+    let read = Gyroscope::default().with_noise(1e-3).with_offset(Vector3::new(0.01, -0.02, 0.01));
+    let turbulent = Disturbances::default().with_torque_noise(3e-3);
+    let record = spun(&body, &turbulent, &read, 20, &mut Random::new(84));
+    let of = |mass: f64, time: f64| {
+        let own = &record.segments[0];
+        let slow = |list: &[Vector3<f64>]| list.iter().map(|w| w / time).collect::<Vec<_>>();
+        let times = own.times().iter().map(|t| t * time).collect();
+        let segment = Segment::new("proof", times, slow(own.rates())).unwrap();
+        let mut record = Record::default();
+        record.segments.push(segment.with_wheel(slow(own.wheel().unwrap())).unwrap());
+        let settings = Settings::default().with_sensor(SensorPriors::default().with_offset(0.02 / time));
+        calibrate_wheel(&record, &Inertia::from_tensor(body.tensor() * mass).unwrap(), &settings).unwrap()
+    };
+    let (one, other) = (of(1.0, 1.0), of(0.125, 4.0));
+    let density = |warnings: &[WheelWarning]| match warnings {
+        [WheelWarning::TorqueNoise { density }, ..] => *density,
+        other => panic!("{other:?}"),
+    };
+    assert_eq!((one.dof, one.samples, one.segments), (other.dof, other.samples, other.segments));
+    assert_eq!(one.nuisances.len(), 3);
+    let offset = |of: &polhode_fit::WheelCalibration| [of.nuisances[1].value, of.nuisances[1].sigma];
+    for (ratio, expected) in [
+        (other.inertia / one.inertia, 0.125),
+        (other.sigma / one.sigma, 0.125),
+        (other.radius / one.radius, 4.0),
+        (other.noise_sigma / one.noise_sigma, 0.25),
+        (other.chi2_per_dof / one.chi2_per_dof, 1.0),
+        (offset(&other)[0] / offset(&one)[0], 0.25),
+        (offset(&other)[1] / offset(&one)[1], 0.25),
+        (density(&other.warnings) / density(&one.warnings), 1.0 / 64.0),
+    ] {
+        assert!((ratio / expected - 1.0).abs() < 1e-9, "{ratio} {expected}");
+    }
+    // the torque over the moments, the mean of the squares of whose inverses is 0.466
+    let expected = 9e-6 * (1.0 + 0.25 + 1.0 / 6.76) / 3.0;
+    assert!((0.2..5.0).contains(&(density(&one.warnings) / expected)), "{:?}", one.warnings);
+    assert!((one.noise_sigma / 1e-3 - 1.0).abs() < 0.2 && (one.inertia - WHEEL).abs() < 5.0 * one.sigma);
+}
+
 #[test]
 fn what_cannot_be_calibrated_is_refused() {
     let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
