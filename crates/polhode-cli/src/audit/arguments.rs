@@ -78,10 +78,9 @@ impl ReadingArguments {
         let has_quaternions = has(|rows| matches!(rows.attitude, Some(Attitudes::Quaternions(_))));
         let has_angles = has(|rows| matches!(rows.attitude, Some(Attitudes::Angles(_))));
         let has_rates = has(|rows| rows.rates.is_some());
+        self.attitude.check_forms(has_quaternions, has_angles)?;
         for (flag, is_used, what) in [
-            (self.attitude.given_of_order(), has_quaternions, "a quaternion"),
             (self.attitude.given_of_direction(), has(|rows| rows.attitude.is_some()), "an attitude"),
-            (self.attitude.given_of_angles(), has_angles, "a triple of Euler angles"),
             (of_momentum, has(|rows| rows.momentum.is_some()), "an angular momentum"),
             (of_rates, has_rates, "an angular velocity"),
             (of_unit, has_rates, "an angular velocity"),

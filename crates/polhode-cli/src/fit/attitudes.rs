@@ -79,6 +79,8 @@ pub(super) struct Read {
     pub(super) stated: Option<Direction>,
     /// Units of each file.
     pub(super) read_as: Vec<ReadAs>,
+    has_quaternions: bool,
+    has_angles: bool,
 }
 
 impl PoseArguments {
@@ -122,9 +124,14 @@ impl PoseArguments {
 
     /// Refuses files whose rates, by the attitudes beside them, are those about the axes of space.
     pub(super) fn check_frames(&self, beside: &[PathBuf], reading: &RecordArguments) -> Result<(), Error> {
+        let (mut has_quaternions, mut has_angles) = (beside.is_empty(), beside.is_empty());
         for path in beside {
             let name = visible(&path.display().to_string()).into_owned();
             let mut found = trajectory::read(path, &reading.table())?;
+            for (_, rows) in &found.bodies {
+                has_quaternions |= matches!(rows.attitude, Some(Attitudes::Quaternions(_)));
+                has_angles |= matches!(rows.attitude, Some(Attitudes::Angles(_)));
+            }
             self.convention.order(&mut found)?;
             let claims = self.convention.claims(found.claims);
             let [(_, rows)] = &found.bodies[..] else { continue };
@@ -143,7 +150,7 @@ impl PoseArguments {
                 return Err(Error::input(&name, "", &rule, remedy));
             }
         }
-        Ok(())
+        self.convention.check_forms(has_quaternions, has_angles)
     }
 
     /// The attitudes of all files and windows.
@@ -185,7 +192,9 @@ impl PoseArguments {
                 Some(before) => joined(before, one, path)?,
             });
         }
-        all.ok_or_else(|| Error::Input("--window: no file has samples in these windows".into()))
+        let all = all.ok_or_else(|| Error::Input("--window: no file has samples in these windows".into()))?;
+        self.convention.check_forms(all.has_quaternions, all.has_angles)?;
+        Ok(all)
     }
 
     fn of_file(&self, path: &Path, reading: &RecordArguments) -> Result<Read, Error> {
@@ -242,7 +251,14 @@ impl PoseArguments {
             plain if plain.is_empty() => rows.attitude.as_ref().map_or("", Attitudes::name).into(),
             plain => plain,
         };
-        Ok(Read { poses, form, stated: claims.attitude, read_as: vec![read_as] })
+        Ok(Read {
+            poses,
+            form,
+            stated: claims.attitude,
+            read_as: vec![read_as],
+            has_quaternions: matches!(rows.attitude, Some(Attitudes::Quaternions(_))),
+            has_angles: matches!(rows.attitude, Some(Attitudes::Angles(_))),
+        })
     }
 }
 
@@ -260,7 +276,14 @@ fn joined(before: Read, next: Read, path: &Path) -> Result<Read, Error> {
     }
     let form = if before.form == next.form { before.form } else { format!("{}; {}", before.form, next.form) };
     let read_as = [before.read_as, next.read_as].concat();
-    Ok(Read { poses: before.poses.join(next.poses), form, stated: before.stated, read_as })
+    Ok(Read {
+        poses: before.poses.join(next.poses),
+        form,
+        stated: before.stated,
+        read_as,
+        has_quaternions: before.has_quaternions || next.has_quaternions,
+        has_angles: before.has_angles || next.has_angles,
+    })
 }
 
 /// The convention of the attitudes. What the motion cannot tell must be stated: of a quaternion the place of the scalar, since the other

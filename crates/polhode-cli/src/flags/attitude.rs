@@ -102,13 +102,19 @@ pub(crate) fn check_matrices(matrices: &[[f64; 9]], times: &[f64], name: &str) -
 }
 
 impl AttitudeArguments {
+    /// [`check_used`] of the flags of one form of attitudes, where these forms were read.
+    pub(crate) fn check_forms(&self, has_quaternions: bool, has_angles: bool) -> Result<(), Error> {
+        check_used(self.given_of_order(), has_quaternions, "a quaternion")?;
+        check_used(self.given_of_angles(), has_angles, "a triple of Euler angles")
+    }
+
     /// The first flag that is given, and its value.
     pub(crate) fn given(&self) -> Option<(&'static str, String)> {
         self.given_of_order().or_else(|| self.given_of_direction()).or_else(|| self.given_of_angles())
     }
 
     /// The flag of the place of the scalar, and its value.
-    pub(crate) fn given_of_order(&self) -> Option<(&'static str, String)> {
+    fn given_of_order(&self) -> Option<(&'static str, String)> {
         of_order(self.quaternion)
     }
 
@@ -118,7 +124,7 @@ impl AttitudeArguments {
     }
 
     /// The first flag of Euler angles that is given, and its value.
-    pub(crate) fn given_of_angles(&self) -> Option<(&'static str, String)> {
+    fn given_of_angles(&self) -> Option<(&'static str, String)> {
         let euler = self.euler.map(|(sequence, turns)| {
             let behind = if turns == Turns::Extrinsic { ":extrinsic" } else { "" };
             ("--euler", format!("{sequence}{behind}"))

@@ -119,6 +119,42 @@ fn one_motion_is_read_from_quaternions_matrices_and_angles_alike() {
 }
 
 #[test]
+fn a_flag_of_a_form_of_attitudes_that_no_file_has_is_refused() {
+    let scratch = Scratch::new("fit-attitudes-forms");
+    let turned = |k: u32| {
+        let (angle, t) = (0.1 * f64::from(k), f64::from(k));
+        let (c, s) = (libm::cos(angle), libm::sin(angle));
+        vec![t, c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0]
+    };
+    let header = "t,r11,r12,r13,r21,r22,r23,r31,r32,r33";
+    let matrices = scratch.file("matrices.csv", table(header, (0..30).map(turned)));
+    let quaternion = |k: u32| {
+        let half = 0.05 * f64::from(k);
+        vec![f64::from(k), libm::cos(half), 0.0, 0.0, libm::sin(half)]
+    };
+    let quaternions = scratch.file("quaternions.csv", table("t,q0,q1,q2,q3", (0..30).map(quaternion)));
+    let rated = (0..30).map(|k| [quaternion(k), vec![0.0, 0.0, 0.1]].concat());
+    let rated = scratch.file("rated.csv", table("t,q0,q1,q2,q3,wx (rad/s),wy (rad/s),wz (rad/s)", rated));
+    let of_quaternions = "says how a quaternion is written, and none is read";
+    let of_angles = "says how a triple of Euler angles is written, and none is read";
+    refused(2, &format!("fit {matrices} --quaternion xyzw"), &["--quaternion: 'xyzw'", of_quaternions]);
+    for flag in ["--euler zyx", "--angle-unit deg"] {
+        refused(2, &format!("fit {matrices} {flag}"), &[of_angles]);
+        for line in [
+            format!("fit {quaternions} --quaternion wxyz {flag}"),
+            format!("fit {rated} --from both --quaternion wxyz {flag}"),
+            // the attitudes beside rates that are fitted tell the axes of these
+            format!("fit {rated} --quaternion wxyz {flag}"),
+        ] {
+            refused(2, &line, &[flag.split(' ').next().unwrap(), of_angles]);
+        }
+    }
+    // one of several files that has the form is enough
+    let both = format!("fit {matrices} {quaternions} --quaternion wxyz --angle-unit deg");
+    refused(2, &both, &["error: --angle-unit: 'deg'", of_angles]);
+}
+
+#[test]
 fn a_direction_that_is_stated_wrongly_and_one_that_nobody_can_tell_are_refused() {
     let scratch = Scratch::new("fit-attitudes-direction");
     let text = output(&format!("{SIMULATE} --attitude-noise 0.01"));
