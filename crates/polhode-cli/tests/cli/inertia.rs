@@ -416,7 +416,8 @@ fn a_quaternion_of_any_norm_is_a_turn() {
     let inertia = |line: &str| numbers(&scratch.json(line)["inertia"]);
     let mut found = Vec::new();
     for scale in ["1", "1e-200", "1e200", "5e-324"] {
-        let model = format!("<inertial quat=\"{scale} 0 0 {scale}\" mass=\"100\" diaginertia=\"1 1.5 2\"/>");
+        let turn = format!("quat=\"{scale} 0 0 {scale}\"");
+        let model = format!("<inertial pos=\"0 0 0\" {turn} mass=\"100\" diaginertia=\"1 1.5 2\"/>");
         scratch.file("model.xml", model);
         let part = format!(
             "[[part]]\nshape = \"tensor\"\nmass = 1\ninertia = [1, 1.5, 2, 0, 0, 0]\nturn = [{scale}, 0, 0, {scale}]\n"

@@ -354,6 +354,22 @@ mod tests {
     }
 
     #[test]
+    fn a_place_that_mjcf_leaves_out_or_states_in_two_ways_is_a_defect() {
+        let of = |element: &str| {
+            let class = "<default><default class='raised'><geom pos='0 0 1'/></default></default>";
+            let text = format!("<mujoco>{class}<body name='b'>{element}</body></mujoco>");
+            defects(Language::Mjcf, &text).remove(0).1
+        };
+        let says = "model:1: <inertial>: pos is missing";
+        assert_eq!(of("<inertial mass='2' diaginertia='1 2 2.5'/>"), says);
+        let says = "model:1: <geom>: has both pos and fromto; leave one out";
+        for (place, expected) in [("pos='0 0 1'", says), ("class='raised'", says), ("pos='0 0 0'", "")] {
+            let geom = format!("<geom type='capsule' size='0.1' fromto='0 0 0 0 0 1' {place}/>");
+            assert_eq!(of(&geom), expected, "{place}");
+        }
+    }
+
+    #[test]
     fn a_place_or_a_moment_that_stands_twice_is_a_defect() {
         let origins = "<origin xyz='1 0 0'/><origin xyz='0 0 0' rpy='0 0 0.5'/>";
         let urdf = format!("<link name='a'><inertial>{origins}{TENSOR}</inertial></link>");

@@ -119,6 +119,9 @@ impl<'e> Geom<'e, '_> {
 
     fn pose(&self) -> Result<Pose, String> {
         if let Some([from, to]) = self.ends()? {
+            if self.numbers::<3>("pos")?.is_some_and(|pos| pos != [0.0; 3]) {
+                return Err(self.element.error("has both pos and fromto; leave one out"));
+            }
             let turn =
                 z_to(to - from).ok_or_else(|| self.element.error("fromto: both ends are the same point"))?;
             return Ok(Pose { at: (from + to) * 0.5, turn });

@@ -178,6 +178,8 @@ impl<'e> Model<'e> {
         if let (Some(turn), Some(_)) = (turn, full) {
             return Err(inertial.error(&format!("has both fullinertia and {turn}; leave one out")));
         }
+        // MuJoCo takes no centre of mass for granted
+        inertial.needed::<3>("pos")?;
         let pose = self.compiler.pose(inertial)?;
         let [xx, yy, zz, xy, xz, yz] = entries;
         Ok(Some(Given {
