@@ -223,6 +223,21 @@ mod tests {
     }
 
     #[test]
+    fn a_pose_of_sdf_in_another_frame_is_a_defect_in_every_version() {
+        let of = |attribute: &str| {
+            let pose = format!("<inertial><pose {attribute}>0 0 1 0 0 0</pose>");
+            let text = format!("<link name='a'>{}</link>", INERTIAL.replace("<inertial>", &pose));
+            defects(Language::Sdf, &text).remove(0).1
+        };
+        for name in ["relative_to", "frame"] {
+            let says = format!("model:1: <pose>: {name}: poses in other frames are not read");
+            assert!(of(&format!("{name}='hand'")).starts_with(&says), "{name}");
+            // the default
+            assert_eq!(of(&format!("{name}=''")), "", "{name}");
+        }
+    }
+
+    #[test]
     fn settings_that_cannot_be_read_are_defects() {
         let model = |settings: &str| {
             let body = "<body name='b'><geom type='box' size='1 2 3' mass='1'/></body>";

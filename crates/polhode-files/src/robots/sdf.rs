@@ -58,10 +58,15 @@ fn stated(inertial: &Element) -> Result<Option<Given>, String> {
         );
     }
     let [x, y, z, roll, pitch, yaw] = match inertial.single("pose")? {
-        Some(pose) if pose.attribute("relative_to").is_some_and(|frame| !frame.is_empty()) => {
-            return Err(pose.error("relative_to: poses in other frames are not read; give it in the link's"));
+        Some(pose) => {
+            // which is called frame before 1.7
+            let named = |name: &&str| pose.attribute(name).is_some_and(|frame| !frame.is_empty());
+            if let Some(name) = ["relative_to", "frame"].into_iter().find(named) {
+                let rule = format!("{name}: poses in other frames are not read; give it in the link's");
+                return Err(pose.error(&rule));
+            }
+            angles_in_radians(pose)?
         }
-        Some(pose) => angles_in_radians(pose)?,
         None => [0.0; 6],
     };
     let mass = inertial.single("mass")?.ok_or_else(|| inertial.error("<mass> is missing"))?;
