@@ -1,7 +1,7 @@
 //! Triangles as files hold them: open or closed, in any unit.
 
 use core::mem::take;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Matrix3, Vector3};
 
@@ -79,7 +79,12 @@ impl SurfaceBuilder {
 
     /// What is added from here on belongs to the group `name`.
     pub fn begin_group(&mut self, name: &str) {
-        self.welded.begin_group(name);
+        self.begin_groups(vec![name.into()]);
+    }
+
+    /// What is added from here on belongs to each of the groups called `names`, and to no other.
+    pub fn begin_groups(&mut self, names: Vec<String>) {
+        self.welded.begin_groups(names);
     }
 
     /// The surface.
@@ -140,9 +145,11 @@ impl Surface {
         [0, 1, 2].map(|k| bounds.high[k] - bounds.low[k])
     }
 
-    /// Names of groups: `g` and `o` of an OBJ file, `solid` of an ASCII STL.
+    /// Names of groups, each once: `g` and `o` of an OBJ file, `solid` of an ASCII STL.
     pub fn groups(&self) -> impl Iterator<Item = &str> {
-        self.welded.groups.iter().map(|(name, _)| name.as_str())
+        let mut seen = BTreeSet::new();
+        let names = self.welded.groups.iter().flat_map(|(names, _)| names).map(String::as_str);
+        names.filter(move |name| seen.insert(*name))
     }
 
     /// The triangles of the groups called `name`, if there are any.
@@ -150,7 +157,8 @@ impl Surface {
     pub fn group(&self, name: &str) -> Option<Self> {
         let groups = &self.welded.groups;
         let ends = groups.iter().skip(1).map(|(_, start)| *start).chain([self.welded.triangles.len()]);
-        let chosen = groups.iter().zip(ends).filter(|((found, _), _)| found == name);
+        let chosen =
+            groups.iter().zip(ends).filter(|((names, _), _)| names.iter().any(|found| found == name));
         let triangles = chosen.flat_map(|((_, start), end)| &self.welded.triangles[*start..end]);
         Self::new(triangles.map(|triangle| self.welded.corners(*triangle).map(Into::into))).ok()
     }

@@ -21,8 +21,8 @@ pub(super) const NONE: u32 = u32::MAX;
 pub(super) struct Welded {
     pub(super) vertices: Vec<[f64; 3]>,
     pub(super) triangles: Vec<[u32; 3]>,
-    /// Names of groups of triangles, and where in the list of triangles each begins.
-    pub(super) groups: Vec<(String, usize)>,
+    /// Names of the groups that triangles belong to, and where in the list of triangles that begins.
+    pub(super) groups: Vec<(Vec<String>, usize)>,
     /// Numbers of triangles of the input that were left out, for messages that count the input's.
     pub(super) skipped: Vec<u64>,
     /// Open addressing: numbers of vertices at the places of their hashes.
@@ -49,14 +49,14 @@ impl Welded {
         Ok(())
     }
 
-    /// What follows belongs to the group `name`.
-    pub(super) fn begin_group(&mut self, name: &str) {
+    /// What follows belongs to the groups called `names`, and to no other.
+    pub(super) fn begin_groups(&mut self, names: Vec<String>) {
         let start = self.triangles.len();
         // a group without triangles is none
         while self.groups.last().is_some_and(|(_, before)| *before == start) {
             self.groups.pop();
         }
-        self.groups.push((name.into(), start));
+        self.groups.push((names, start));
     }
 
     /// The number of a vertex, a new one if these bits were not met before.

@@ -10,12 +10,15 @@ use super::text::{Lines, beginning, numbers};
 
 /// The surface in a file of the kind Wavefront OBJ.
 ///
+/// A triangle belongs to the object that `o` named last and to every group that the last `g` names.
+///
 /// # Errors
 /// A file of another kind, or one that ends too early, by its line or byte.
 pub fn read(reader: impl BufRead) -> Result<Surface, MeshFileError> {
     let mut mesh = SurfaceBuilder::default();
     let mut vertices: Vec<Vector3<f64>> = Vec::new();
     let mut face = Vec::new();
+    let (mut object, mut groups) = (Vec::<String>::new(), Vec::<String>::new());
     let mut lines = Lines::new(reader);
     while let Some((line, text)) = lines.next()? {
         let mut words = text.split_ascii_whitespace();
@@ -44,7 +47,15 @@ pub fn read(reader: impl BufRead) -> Result<Surface, MeshFileError> {
                     before = next;
                 }
             }
-            Some("g" | "o") => mesh.begin_group(words.next().unwrap_or_default()),
+            Some("o") => {
+                // one name, which some programs write with blanks
+                object = vec![words.collect::<Vec<_>>().join(" ")];
+                mesh.begin_groups([object.as_slice(), &groups].concat());
+            }
+            Some("g") => {
+                groups = words.map(String::from).collect();
+                mesh.begin_groups([object.as_slice(), &groups].concat());
+            }
             _ => {} // normals, texture, materials, comments
         }
     }

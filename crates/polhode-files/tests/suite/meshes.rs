@@ -136,6 +136,21 @@ fn every_format_reads_the_same_cube() {
 }
 
 #[test]
+fn a_triangle_of_an_obj_belongs_to_its_object_and_to_all_its_groups() {
+    // triangles of the areas 1, 2, 4 and 8, whose sum tells which they are
+    let text = "v 0 0 0\nv 2 0 0\nv 0 1 0\nv 0 2 0\nv 0 4 0\nv 0 8 0\n\
+                o left arm\ng upper skin\nf 1 2 3\ng lower\nf 1 2 4\no body\nf 1 2 5\ng skin\nf 1 2 6\n";
+    let surface = mesh::obj(text.as_bytes()).unwrap();
+    assert_eq!(surface.groups().collect::<Vec<_>>(), ["left arm", "upper", "skin", "lower", "body"]);
+    let area = |name: &str| {
+        let group = surface.group(name)?;
+        Some(group.triangles().map(|[a, b, c]| (b - a).cross(&(c - a)).norm() / 2.0).sum::<f64>())
+    };
+    let areas = ["left arm", "upper", "skin", "lower", "body", "left"].map(area);
+    assert_eq!(areas, [Some(3.0), Some(1.0), Some(9.0), Some(6.0), Some(12.0), None]);
+}
+
+#[test]
 fn a_line_without_end_is_refused() {
     let long = "line 2 is longer than 1048576 bytes; is this the right file?";
     let endless = |head: &'static [u8]| std::io::BufReader::new(head.chain(std::io::repeat(b'1')));
