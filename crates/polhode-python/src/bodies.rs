@@ -37,6 +37,8 @@ use crate::wheels::Wheel;
 pub(crate) struct Body {
     pub(crate) body: body::Body,
     named: Option<Box<catalogue::NamedBody>>,
+    /// Of a mesh, why nothing may act on it under which its size counts.
+    sizeless: Option<String>,
     raised: Vec<Raised>,
 }
 
@@ -58,7 +60,7 @@ pub(crate) fn inertia(name: &'static str, value: &Bound<'_, PyAny>) -> PyResult<
 
 impl From<Inertia> for Body {
     fn from(inertia: Inertia) -> Self {
-        Body { body: body::Body::free(inertia), named: None, raised: Vec::new() }
+        Body { body: body::Body::free(inertia), named: None, sizeless: None, raised: Vec::new() }
     }
 }
 
@@ -131,15 +133,24 @@ impl Body {
         forces: Option<Vec<Force>>,
         wheels: Option<Vec<Wheel>>,
     ) -> PyResult<Self> {
-        let Body { mut body, named, mut raised } = Body::of("inertia", inertia)?;
-        for Wheel(wheel) in wheels.unwrap_or_default() {
+        let Body { mut body, named, sizeless, mut raised } = Body::of("inertia", inertia)?;
+        let (forces, wheels) = (forces.unwrap_or_default(), wheels.unwrap_or_default());
+        if !wheels.is_empty() || forces.iter().any(|force| force.is_sized) {
+            if let Some(reason) = &sizeless {
+                return Err(refused(reason));
+            }
+            if let Some(name) = named.as_ref().map(|named| named.name) {
+                heard(inertia.py(), || bodies::check_size("inertia", name))?;
+            }
+        }
+        for Wheel(wheel) in wheels {
             body = body.with_wheel(wheel).map_err(of("wheels"))?;
         }
-        for Force { force, raised: own } in forces.unwrap_or_default() {
+        for Force { force, raised: own, .. } in forces {
             body = body.with(force);
             raised.extend(own);
         }
-        Ok(Body { body, named, raised })
+        Ok(Body { body, named, sizeless, raised })
     }
 
     /// The inertia tensor, with that of wheels at rest on the body, body axes, kg m^2.
@@ -212,6 +223,7 @@ impl Body {
 }
 
 /// The body that a text names: one of the catalogue, with its start and the wheels that it carries then, or one of a file as `FILE` or `FILE:LINK`.
+/// A mesh has 1 kg/m^3, and neither wheels nor forces but a gravity gradient, under which its size does not count.
 ///
 /// >>> import polhode
 /// >>> polhode.body("toutatis")
@@ -228,7 +240,7 @@ pub(crate) fn named_body(py: Python<'_>, name: &str) -> PyResult<Body> {
 fn by_name(py: Python<'_>, text: &str) -> PyResult<Body> {
     if let Some(named) = catalogue::body(text).or_else(|| catalogue::top(text)) {
         let body = named.body().map_err(refused)?;
-        return Ok(Body { body, named: Some(Box::new(named)), raised: Vec::new() });
+        return Ok(Body { body, named: Some(Box::new(named)), sizeless: None, raised: Vec::new() });
     }
     if let Some((inertia, wheels)) = heard(py, || bodies::inertia("body", text))? {
         if !wheels.iter().all(WheelAtStart::is_held) {
@@ -236,11 +248,12 @@ fn by_name(py: Python<'_>, text: &str) -> PyResult<Body> {
                 "body: '{text}': the momentum of a wheel that is free or driven depends on the start; give it as Wheel(...).free(omega)"
             )));
         }
-        let Body { mut body, named, raised } = Body::from(inertia);
+        let sizeless = bodies::check_size("body", text).err().map(|error| error.to_string());
+        let Body { mut body, named, raised, .. } = Body::from(inertia);
         for wheel in &wheels {
             body = body.with_wheel(wheel.at_speed()).map_err(of("body"))?;
         }
-        return Ok(Body { body, named, raised });
+        return Ok(Body { body, named, sizeless, raised });
     }
     if text.contains(['.', '/']) {
         let rule = "no such file, and no such body in the catalogue";

@@ -14,6 +14,8 @@ use crate::error::{of, refused};
 #[derive(Clone)]
 pub(crate) struct Force {
     pub(crate) force: body::Force,
+    /// Whether the size of the inertia counts under it; under a gravity gradient it does not.
+    pub(crate) is_sized: bool,
     /// Of a Python function.
     pub(crate) raised: Option<Raised>,
 }
@@ -38,7 +40,7 @@ impl Raised {
 
 impl From<body::Force> for Force {
     fn from(force: body::Force) -> Self {
-        Force { force, raised: None }
+        Force { force, is_sized: true, raised: None }
     }
 }
 
@@ -54,12 +56,17 @@ impl Force {
     fn during(&self, intervals: &Bound<'_, PyAny>) -> PyResult<Self> {
         let intervals: Vec<[f64; 2]> = Numbers::of("intervals", intervals)?.rows(None)?;
         let force = self.force.clone().during(intervals).map_err(of("intervals"))?;
-        Ok(Force { force, raised: self.raised.clone() })
+        Ok(Force { force, ..self.clone() })
     }
 
     fn __repr__(&self) -> String {
         format!("Force({:?})", self.force.name())
     }
+}
+
+/// A gravity gradient, which is in proportion to the inertia.
+fn gradient(force: body::Force) -> Force {
+    Force { is_sized: false, ..force.into() }
 }
 
 fn vector(name: &'static str, value: &Bound<'_, PyAny>) -> PyResult<Vector3<f64>> {
@@ -80,7 +87,7 @@ pub(crate) fn gravity(weight_moment: &Bound<'_, PyAny>) -> PyResult<Force> {
 #[pyfunction]
 #[pyo3(signature = (mean_motion, eccentricity = 0.0))]
 pub(crate) fn gravity_gradient(mean_motion: f64, eccentricity: f64) -> PyResult<Force> {
-    body::Force::gravity_gradient(mean_motion, eccentricity).map(Force::from).map_err(refused)
+    body::Force::gravity_gradient(mean_motion, eccentricity).map(gradient).map_err(refused)
 }
 
 /// The gravity gradient on a conic about a mass with the gravitational parameter gm, m^3/s^2: least distance from its centre, m,
@@ -107,7 +114,7 @@ pub(crate) fn gravity_gradient_on_conic(
             Some(angles) => orbit.in_plane(angles.into()),
         },
     );
-    orbit.map(|orbit| body::Force::gravity_gradient_on(orbit).into()).map_err(refused)
+    orbit.map(|orbit| gradient(body::Force::gravity_gradient_on(orbit))).map_err(refused)
 }
 
 /// The gravity gradient on an orbit by its places (n, 3), m, axes of space, at the ascending times `t`, s, about a mass with the
@@ -129,7 +136,7 @@ pub(crate) fn gravity_gradient_on_table(
     let times = Numbers::of("t", t)?.list()?;
     let places = Numbers::of("places", places)?.rows::<3>(Some(times.len()))?;
     let orbit = Orbit::table(gm, &times, &places);
-    orbit.map(|orbit| body::Force::gravity_gradient_on(orbit).into()).map_err(refused)
+    orbit.map(|orbit| gradient(body::Force::gravity_gradient_on(orbit))).map_err(refused)
 }
 
 /// A torque constant in body axes, N m.
@@ -182,5 +189,5 @@ pub(crate) fn force(name: String, torque: Py<PyAny>) -> Force {
             Vector3::repeat(f64::NAN)
         })
     };
-    Force { force: body::Force::torque_fn(name, law), raised: Some(raised) }
+    Force { raised: Some(raised), ..body::Force::torque_fn(name, law).into() }
 }

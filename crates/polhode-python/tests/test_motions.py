@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import polhode
-from polhode import Body, Ensemble, FreeMotion, LagrangeTop, PolhodeError, run
+from polhode import Body, Ensemble, FreeMotion, LagrangeTop, PolhodeError, PolhodeWarning, run
 
 OMEGA = [0.4, 1, -0.3]
 
@@ -115,6 +115,25 @@ def test_forces_add_and_stop():
     short = Body([1, 2, 3], [brake.during([[0, 1]])])
     braked = run("rk4", short, OMEGA, times=[0, 1, 5, 10], step=0.01)
     assert braked.energy[1] < braked.energy[0] and abs(braked.energy[3] / braked.energy[1] - 1) < 1e-9
+
+
+def test_what_has_no_size_is_not_moved_by_what_has_one(tmp_path):
+    path = tmp_path / "tetrahedron.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n")
+    mesh = str(path)
+    gradient, brake = polhode.gravity_gradient(1e-3), polhode.drag(0.1)
+    assert Body(mesh, [gradient, gradient.during([[0, 1]])]).forces == ["gravity gradient"] * 2
+    own = polhode.force("gravity gradient", lambda t, attitude, omega: 0 * omega)
+    read = Body(mesh, [gradient])
+    path.unlink()
+    for acting in ({"forces": [own]}, {"forces": [gradient, brake.during([[0, 1]])]}, {"wheels": [polhode.Wheel([0, 0, 1], 1e-3, 1)]}):
+        with pytest.raises(PolhodeError, match="tetrahedron.obj': a mesh file tells no mass"):
+            Body(read, **acting)
+    with pytest.warns(PolhodeWarning, match="toutatis: the catalogue has ratios of moments"):
+        Body("toutatis", [brake])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert Body("toutatis", [gradient]).forces and Body("spacecraft", [brake]).forces
 
 
 def test_a_function_is_a_force():

@@ -6,7 +6,7 @@ use polhode::body::{Body, Orbit, WheelAtStart};
 use polhode::catalogue::{self, Orientation};
 use polhode::inertia::Inertia;
 use polhode_files::bodies;
-use polhode_files::error::{Error, tell, warn};
+use polhode_files::error::{Error, tell};
 use polhode_files::numbers::{list, numbers};
 use polhode_files::text::visible;
 
@@ -54,20 +54,9 @@ impl Described {
     }
 }
 
-/// Refuses a mesh, which has no mass, and warns of moments of which the catalogue has the ratios alone: where their size counts, as under a
-/// torque, drag, a weight or a wheel.
+/// [`bodies::check_size`] of what `--body` names.
 pub(crate) fn check_size(name: &str) -> Result<(), Error> {
-    if bodies::is_mesh(name) {
-        let rule = "a mesh file tells no mass, and here the size of the inertia counts";
-        let remedy = "write a TOML file with the mesh as a [[part]] with its mass";
-        return Err(Error::input("--body", name, rule, remedy));
-    }
-    if catalogue::body(name).is_some_and(|body| body.unit == "ratio") {
-        warn(&format!(
-            "{name}: the catalogue has ratios of moments, which are taken as kg m^2, and their size counts"
-        ));
-    }
-    Ok(())
+    bodies::check_size("--body", name)
 }
 
 /// Says which density the mesh of a `file` has.

@@ -8,6 +8,7 @@ use std::path::Path;
 
 use nalgebra::Matrix3;
 use polhode::body::WheelAtStart;
+use polhode::catalogue;
 use polhode::inertia::Inertia;
 
 use crate::error::{Error, warn};
@@ -51,6 +52,25 @@ pub fn inertia(flag: &str, text: &str) -> Result<Option<(Inertia, Vec<WheelAtSta
 #[must_use]
 pub fn is_mesh(text: &str) -> bool {
     matches!(ending(Path::new(text)).as_str(), "stl" | "obj" | "ply") && Path::new(text).is_file()
+}
+
+/// Refuses a mesh, which has no mass, and warns of moments of which the catalogue has the ratios alone: where their size counts, as under a
+/// torque, drag, a weight or a wheel. `name` is what `flag` names.
+///
+/// # Errors
+/// A mesh.
+pub fn check_size(flag: &str, name: &str) -> Result<(), Error> {
+    if is_mesh(name) {
+        let rule = "a mesh file tells no mass, and here the size of the inertia counts";
+        let remedy = "write a TOML file with the mesh as a [[part]] with its mass";
+        return Err(Error::input(flag, name, rule, remedy));
+    }
+    if catalogue::body(name).is_some_and(|body| body.unit == "ratio") {
+        warn(&format!(
+            "{name}: the catalogue has ratios of moments, which are taken as kg m^2, and their size counts"
+        ));
+    }
+    Ok(())
 }
 
 fn chosen<'t>(flag: &str, text: &'t str) -> Result<Option<Chosen<'t>>, Error> {
