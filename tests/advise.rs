@@ -140,6 +140,14 @@ fn what_cannot_be_met_is_refused_with_the_reason() {
         AdviseError::Unreached { method, error, .. } => assert!(method == "explicit-euler" && error > 1e-6),
         error => panic!("{error}"),
     }
+    // explicit Euler adds h^2 |m x w|^2 to |m|^2 in each step, which in its shortest ones makes the energy 1e-3 larger
+    coarse.energy_error = Some(1e-15);
+    let error = refused(&coarse);
+    assert!(matches!(error, AdviseError::EnergyUnreached { error: off, .. } if off > 1e-6), "{error}");
+    let says = "no method meets a relative energy error of 1.0e-15; the nearest is explicit-euler with ";
+    assert!(error.to_string().starts_with(says), "{error}");
+    coarse.energy_error = Some(2e-16);
+    assert!(matches!(refused(&coarse), AdviseError::EnergyBelowRounding { demand } if demand == 2e-16));
     let rest = body.state(UnitQuaternion::identity(), Vector3::zeros()).unwrap();
     assert!(matches!(advise(&body, &rest, &Demand::new(1.0, 1e-6)), Err(AdviseError::AtRest)));
     let braked = body.with(Force::drag(0.1, 0.0).unwrap());

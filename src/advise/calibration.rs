@@ -64,7 +64,16 @@ pub(super) struct Calibration<'a> {
 struct Sought {
     fit: Vec<Choice>,
     rest: Vec<Choice>,
-    unfit: Vec<(String, Option<f64>)>,
+    unfit: Vec<(String, Option<Nearest>)>,
+}
+
+/// The run of a method that came nearest to the demand.
+#[derive(Clone, Copy, Debug)]
+struct Nearest {
+    excess: f64,
+    /// rad.
+    attitude: f64,
+    energy: Option<f64>,
 }
 
 /// A setting of a candidate, and what it is expected to do over the whole time.
@@ -117,6 +126,8 @@ impl<'a> Calibration<'a> {
             return Err(AdviseError::Budget { budget, method: best.method, seconds: best.seconds.value });
         }
         fit.extend(rest);
+        let unfit =
+            unfit.into_iter().map(|(name, nearest)| (name, nearest.map(|run| run.attitude))).collect();
         let jump = self.reference.truth().jump();
         Ok(Advice { best, others: fit, unfit, conditioning: self.conditioning, jump })
     }
@@ -162,7 +173,7 @@ impl<'a> Calibration<'a> {
                     rest.push(first.choice)
                 } else {
                     // it may still be fit, as far as its short run can tell, and is not called so
-                    unfit.push((candidate.name.clone(), Some(first.choice.attitude_error.value)));
+                    unfit.push((candidate.name.clone(), self.nearer(None, &first.choice)));
                 }
                 continue;
             }
@@ -175,16 +186,19 @@ impl<'a> Calibration<'a> {
         Ok(Sought { fit, rest, unfit })
     }
 
-    fn unreached(&self, unfit: &[(String, Option<f64>)]) -> AdviseError {
-        let seen = unfit.iter().filter_map(|(name, error)| error.map(|error| (name, error)));
-        match seen.min_by(|a, b| a.1.total_cmp(&b.1)) {
-            Some((name, error)) => AdviseError::Unreached {
-                demand: self.demand.attitude_error,
-                method: name.clone(),
-                error,
-                until: self.demand.until,
-            },
-            None => AdviseError::NoCandidate,
+    /// The part of the demand that is missed by more, by the method that comes nearest.
+    fn unreached(&self, unfit: &[(String, Option<Nearest>)]) -> AdviseError {
+        let seen = unfit.iter().filter_map(|(name, nearest)| nearest.map(|nearest| (name, nearest)));
+        let Some((name, nearest)) = seen.min_by(|a, b| a.1.excess.total_cmp(&b.1.excess)) else {
+            return AdviseError::NoCandidate;
+        };
+        let (method, until) = (name.clone(), self.demand.until);
+        let (demand, error) = (self.demand.attitude_error, nearest.attitude);
+        match self.demand.energy_error.zip(nearest.energy) {
+            Some((most, energy)) if energy / most > error / demand => {
+                AdviseError::EnergyUnreached { demand: most, method, error: energy, until }
+            }
+            _ => AdviseError::Unreached { demand, method, error, until },
         }
     }
 
@@ -276,16 +290,23 @@ impl<'a> Calibration<'a> {
         (choice.attitude_error.value / self.demand.attitude_error).max(energy)
     }
 
+    /// Of `before` and the run of `choice` the one that is nearer to the demand.
+    fn nearer(&self, before: Option<Nearest>, choice: &Choice) -> Option<Nearest> {
+        let (excess, attitude) = (self.excess(choice), choice.attitude_error.value);
+        let now = Nearest { excess, attitude, energy: choice.energy_error };
+        before.filter(|before| before.excess <= excess).or(Some(now))
+    }
+
     /// The part of the demand that the truth itself may be off by.
     fn doubt(&self) -> f64 {
         2.0 * self.reference.truth().apart() / self.demand.attitude_error
     }
 
-    /// A setting from short runs, or the smallest attitude error that was seen.
-    fn first(&mut self, candidate: &Candidate, short: &Span) -> Result<Found, Option<f64>> {
+    /// A setting from short runs, or the run that came nearest.
+    fn first(&mut self, candidate: &Candidate, short: &Span) -> Result<Found, Option<Nearest>> {
         let mut value = candidate.coarse(self.reference.rate);
         let factor = if candidate.is_adaptive() { 0.01 } else { 0.5 };
-        let (mut nearest, mut before, mut plausible): (Option<f64>, Option<f64>, Option<Found>) =
+        let (mut nearest, mut before, mut plausible): (Option<Nearest>, Option<f64>, Option<Found>) =
             Default::default();
         for _ in 0..RUNGS {
             if self.late(0.0) {
@@ -293,8 +314,8 @@ impl<'a> Calibration<'a> {
             }
             if let Some(run) = self.run(candidate, value, short, None) {
                 let choice = self.expected(candidate, value, short, &run);
-                let (excess, error) = (self.excess(&choice), choice.attitude_error.value);
-                nearest = Some(nearest.map_or(error, |least: f64| least.min(error)));
+                let excess = self.excess(&choice);
+                nearest = self.nearer(nearest, &choice);
                 let (seconds, doubt) = (choice.seconds.value, choice.attitude_error.factor);
                 let found = Found { value, choice };
                 if excess <= AIM {
@@ -322,14 +343,14 @@ impl<'a> Calibration<'a> {
         plausible.ok_or(nearest)
     }
 
-    /// The setting from runs over as much of the time as is affordable, or the smallest attitude error that was seen. `best` is the
-    /// time of the quickest that is known to be fit, s.
+    /// The setting from runs over as much of the time as is affordable, or the run that came nearest. `best` is the time of the
+    /// quickest that is known to be fit, s.
     fn refined(
         &mut self,
         candidate: &Candidate,
         first: Found,
         best: Option<f64>,
-    ) -> Result<Choice, Option<f64>> {
+    ) -> Result<Choice, Option<Nearest>> {
         if candidate.is_exact() {
             return Ok(first.choice);
         }
@@ -355,8 +376,8 @@ impl<'a> Calibration<'a> {
             };
             let choice = self.expected(candidate, value, &span, &run);
             seconds = choice.seconds.value;
-            let (excess, error) = (self.excess(&choice), choice.attitude_error.value);
-            nearest = Some(nearest.map_or(error, |least: f64| least.min(error)));
+            let excess = self.excess(&choice);
+            nearest = self.nearer(nearest, &choice);
             if excess <= most && taken.as_ref().is_none_or(|best| choice.seconds.value < best.seconds.value) {
                 taken = Some(choice);
             }

@@ -57,7 +57,7 @@ pub struct Advice {
     /// those of a first short run.
     pub others: Vec<Choice>,
     /// Methods that meet the demand at no setting that was tried, or in more than thirty times the time of the quickest, with
-    /// the smallest attitude error at which they were seen, rad.
+    /// the attitude error of the run that came nearest to the demand, rad.
     pub unfit: Vec<(String, Option<f64>)>,
     /// How far a start with other last digits is away at the end, rad.
     pub conditioning: f64,

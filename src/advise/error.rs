@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::trial::SAME_RUN;
 use crate::body::StateError;
 use crate::num::Shown;
 use crate::run::RunError;
@@ -35,6 +36,15 @@ pub enum AdviseError {
     /// The start is not usable.
     #[error(transparent)]
     State(#[from] StateError),
+    /// An energy error that no state in doubles has.
+    #[error(
+        "a relative energy error of {demand:.1e} is below rounding: that of the angular momentum to doubles alone changes the \
+         energy by up to {:.1e}; ask for more than that", f64::EPSILON
+    )]
+    EnergyBelowRounding {
+        /// What was asked for.
+        demand: f64,
+    },
     /// Nothing moves.
     #[error("the body is at rest and stays so: every method is exact")]
     AtRest,
@@ -69,13 +79,31 @@ pub enum AdviseError {
         agree_until: f64,
     },
     /// No candidate meets the demand.
-    #[error("no method meets {demand:.1e} rad; the nearest is {method} with {error:.1e} rad at t = {} s", Shown(*until))]
+    #[error(
+        "no method meets {demand:.1e} rad; the nearest is {method} with {error:.1e} rad, and up to {SAME_RUN} times that \
+         between the times looked at, until t = {} s", Shown(*until)
+    )]
     Unreached {
         /// What was asked for, rad.
         demand: f64,
         /// The nearest method.
         method: String,
         /// The error that it is expected to have, rad.
+        error: f64,
+        /// Duration, s.
+        until: f64,
+    },
+    /// No candidate meets the demand on the energy.
+    #[error(
+        "no method meets a relative energy error of {demand:.1e}; the nearest is {method} with {error:.1e}, and up to \
+         {SAME_RUN} times that between the times looked at, until t = {} s", Shown(*until)
+    )]
+    EnergyUnreached {
+        /// What was asked for.
+        demand: f64,
+        /// The nearest method.
+        method: String,
+        /// The relative error that it is expected to have.
         error: f64,
         /// Duration, s.
         until: f64,

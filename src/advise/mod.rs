@@ -82,6 +82,9 @@ impl Demand {
         if self.attitude_error > 1.0 {
             return Err(AdviseError::Lost { attitude_error: self.attitude_error });
         }
+        if let Some(demand) = self.energy_error.filter(|most| *most < f64::EPSILON) {
+            return Err(AdviseError::EnergyBelowRounding { demand });
+        }
         if !self.start_time.is_finite() {
             return Err(AdviseError::NotPositive {
                 quantity: "the start time",

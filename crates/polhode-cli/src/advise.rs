@@ -307,7 +307,9 @@ fn told(error: AdviseError) -> Error {
         }
         AdviseError::AtRest | AdviseError::State(_) => "--omega",
         AdviseError::Budget { .. } => "--budget",
-        AdviseError::NotConserved => "--energy-error",
+        AdviseError::NotConserved
+        | AdviseError::EnergyBelowRounding { .. }
+        | AdviseError::EnergyUnreached { .. } => "--energy-error",
         AdviseError::NoCandidate => "--exclude",
         _ => "advise",
     };

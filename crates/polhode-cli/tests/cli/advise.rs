@@ -55,6 +55,10 @@ fn what_cannot_be_advised_is_refused_with_flag_value_and_remedy() {
             "--until 10 --attitude-error 1e-6 --energy-error 1e-6 --drag 0.1",
             ["--energy-error: ", "do not conserve its energy"],
         ),
+        (
+            "--until 10 --attitude-error 1e-6 --energy-error 1e-30",
+            ["--energy-error: ", "1.0e-30 is below rounding"],
+        ),
     ] {
         refused(&format!("advise {BODY} {flags}"), &says);
     }
