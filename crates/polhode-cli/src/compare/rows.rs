@@ -64,7 +64,8 @@ impl Compare {
         };
         set("method", trajectory.name.clone().into());
         set("status", found.ending.by_clock(self.start_time).to_string().into());
-        if let Some((worst, flips, exact)) = found.invariants {
+        if let Some((worst, flips)) = found.invariants {
+            let exact = found.true_flips;
             set("energy_error", worst.energy.into());
             set("exchanged_energy_error", truth.exchanged_energy_error(&worst).into());
             set("momentum_error", worst.momentum_norm.into());
@@ -144,8 +145,13 @@ fn columns(body: &Body) -> Vec<Column> {
             .heading("evals"),
         Column::new("seconds", "s", "processor time, unwatched").hidden(),
         Column::new("rk4_steps", "", "the same in steps of rk4").heading("rk4 steps").digits(2),
-        Column::new("flips", "", "changes of sign of the momentum along the middle axis").hidden(),
-        Column::new("flips_exact", "", "the same of the true motion").hidden(),
+        Column::new(
+            "flips",
+            "",
+            "changes of sign of the momentum along the middle axis; of a file from row to row",
+        )
+        .hidden(),
+        Column::new("flips_exact", "", "the same of the true motion, beside a file at its rows").hidden(),
         Column::new("flips_right", "", "whether they agree").heading("flips"),
         Column::new("status", "", "ok, or what became of the run"),
     ]
