@@ -127,6 +127,12 @@ impl Gather {
                 "remove those of one of the two",
             );
         }
+        if let Some(pair) = shards.windows(2).find(|pair| pair[0].shard == pair[1].shard) {
+            let mut places = [&pair[0], &pair[1]].map(|shard| shard.path.display().to_string());
+            places.sort();
+            let rule = format!("holds shard {} twice, as {} and as {}", pair[0].shard, places[0], places[1]);
+            return refused(&rule, "remove one of the two");
+        }
         let identity = &first.record.identity;
         // the one that most agree with is the run; the others are told
         let agree =

@@ -4,7 +4,7 @@ use std::fs;
 
 use sha2::Digest as _;
 
-use super::{EXACT, done};
+use super::{EXACT, contents, done};
 use crate::harness::{Scratch, golden, polhode, words};
 
 const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -255,6 +255,22 @@ fn shards(name: &str) -> Scratch {
         done(&format!("ensemble spec.toml --out out --shard {k}/2"), &scratch);
     }
     scratch
+}
+
+/// Its members would count twice.
+#[test]
+fn a_copy_of_a_shard_beside_it_is_refused() {
+    let scratch = shards("ensemble-copy");
+    let folder = scratch.0.join("out/shards");
+    let copy = folder.join("1-of-2-copy");
+    fs::create_dir(&copy).unwrap();
+    for (name, bytes) in contents(&folder.join("1-of-2")) {
+        fs::write(copy.join(name), bytes).unwrap();
+    }
+    let told = refusal(&scratch, "gather out");
+    let says = "holds shard 1/2 twice, as out/shards/1-of-2 and as out/shards/1-of-2-copy; remove one of";
+    assert!(told.contains(says), "{told}");
+    assert_eq!(crate::harness::names(&scratch.0.join("out")), ["shards"]);
 }
 
 /// The record with `sum` in place of the checksum of a file, and sealed again.
