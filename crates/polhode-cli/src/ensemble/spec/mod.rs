@@ -125,6 +125,12 @@ impl Spec {
         }
         let (source, members) = match listed {
             Some(listed) => {
+                for (table, key) in [(&top, "solution"), (&run, "seed")] {
+                    if table.value(key).is_some() {
+                        let rule = "given beside members_file, so that nothing is drawn; leave one of them out";
+                        return Err(table.at(key, rule));
+                    }
+                }
                 let candidates = Candidates::read(&listed, &nominal, &plan)?;
                 let count = candidates.len();
                 if members.is_some_and(|members| members > count) {

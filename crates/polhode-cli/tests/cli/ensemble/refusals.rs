@@ -166,6 +166,13 @@ fn files_of_members_are_refused_with_line_and_law() {
     scratch.file("spec.toml", "[spread]\nmembers_file = \"members.csv\"\n[run]\nmembers = 2\ntimes = [1]\n");
     told += &refusal(&scratch, "ensemble spec.toml --out out");
     golden("ensemble/members.txt", &told);
+    // of drawing
+    for (key, more) in [("seed", "seed = 3\n"), ("solution", "[[solution]]\nweight = 1\n")] {
+        let spec = format!("[spread]\nmembers_file = \"members.csv\"\n[run]\ntimes = [1]\n{more}");
+        scratch.file("spec.toml", spec);
+        let told = refusal(&scratch, "ensemble spec.toml --out out");
+        assert!(told.contains(&format!("key '{key}': given beside members_file, so that")), "{told}");
+    }
 }
 
 #[test]
