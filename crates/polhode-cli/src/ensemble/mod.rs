@@ -298,6 +298,14 @@ fn warn_of(shares: &Shares, members: u64) {
             first.reason
         ));
     }
+    let mut unknown = shares.passages.iter().filter_map(|one| Some((one.member, one.unknown()?)));
+    if let Some((first, reason)) = unknown.next() {
+        let count = 1 + unknown.count();
+        warn(&format!(
+            "whether the event happens is not known of {count} of {members} members, the first of them \
+             member {first}: {reason}; see passages.csv"
+        ));
+    }
 }
 
 /// Some rows, and where all of them are.

@@ -87,6 +87,11 @@ pub(super) fn table(passages: &[Passage]) -> Table {
 }
 
 impl Passage {
+    /// Why it is not known whether the event happens, if it is not.
+    pub(super) fn unknown(&self) -> Option<&str> {
+        (self.numbers.is_none() && self.outcome != NEVER).then_some(&*self.outcome)
+    }
+
     /// Of the cells of a row.
     pub(super) fn parsed(row: &csv::StringRecord) -> Option<Self> {
         let cells: Vec<&str> = row.iter().collect();
@@ -111,5 +116,30 @@ pub(super) fn sentence(passages: &[Passage], event: &str, last: f64) -> String {
             said += &format!(", to {percent} % by {t:.6} s");
         }
     }
+    let unknown = passages.iter().filter(|one| one.unknown().is_some()).count();
+    if unknown > 0 {
+        said += &format!("; not known of {unknown}");
+    }
     said + ".\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_known_is_told_apart_from_what_does_not_happen() {
+        let one = |outcome: &'static str, numbers: Option<[f64; 8]>| Passage {
+            member: 1,
+            outcome: outcome.into(),
+            numbers,
+        };
+        let mut passages = vec![one(HAPPENS, Some([2.0; 8])), one(NEVER, None)];
+        let known = "flip: happens to 1 of 2 members by t = 9 s, to 5 % by 2.000000 s, to 50 % by 2.000000 s";
+        assert_eq!(sentence(&passages, "flip", 9.0), format!("{known}.\n"));
+        passages.push(one("too many looks", None));
+        let unknown = "flip: happens to 1 of 3 members by t = 9 s, to 5 % by 2.000000 s; not known of 1";
+        assert_eq!(sentence(&passages, "flip", 9.0), format!("{unknown}.\n"));
+        assert_eq!(passages[2].unknown(), Some("too many looks"));
+    }
 }

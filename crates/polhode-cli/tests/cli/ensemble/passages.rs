@@ -87,6 +87,21 @@ fn passages_of_shards_are_those_of_one_run() {
     );
 }
 
+/// The second member leaves the range of a double: its momentum is squared, nearly, at each step.
+#[test]
+fn a_member_of_which_nothing_is_known_is_told() {
+    let scratch = Scratch::new("ensemble-passages-unknown");
+    scratch.file("bodies.csv", "omega_x,omega_y,omega_z\n0,0,0\n1e50,1e50,1e50\n");
+    let spec = "[body]\nmoments = [1, 2, 2.5]\n[spread]\nmembers_file = \"bodies.csv\"\n[run]\n\
+                method = \"explicit-euler\"\nstep = 0.5\ntimes = [0, 20]\n\
+                [event]\nfirst = \"rate < 1e-3rad/s\"\n";
+    scratch.file("spec.toml", spec);
+    let answer = polhode(&words("ensemble spec.toml --out out"), &scratch.0);
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    let says = "whether the event happens is not known of 1 of 2 members, the first of them member 2: ";
+    assert!(answer.err.contains(says) && answer.out.contains("; not known of 1.\n"), "{}", answer.err);
+}
+
 #[test]
 fn an_event_that_cannot_be_looked_for_is_refused_before_the_run() {
     let scratch = Scratch::new("ensemble-passages-refused");
