@@ -155,13 +155,17 @@ impl Observer {
         Observer { reading: Reading::of(body), monitor, exact: exact.flatten() }
     }
 
-    /// Writes a row; whether all of it is finite.
+    /// Writes a row; whether all of it is finite, as a [`Run`] asks of a sample.
     fn see(&self, course: &Course<'_>, number: usize, time: usize, x: &Point<f64>, rows: &mut Rows) -> bool {
         if !rows.set(number, time, &self.reading, x.phase()) {
             return false;
         }
         if let Some(monitor) = &self.monitor {
-            rows.set_errors(number, time, monitor.errors(x));
+            let errors = monitor.errors(x);
+            if !errors.is_finite() {
+                return false;
+            }
+            rows.set_errors(number, time, errors);
         }
         let elapsed = course.clock.elapsed(x.steps());
         if let Some(exact) = &self.exact

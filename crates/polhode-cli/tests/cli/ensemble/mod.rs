@@ -285,6 +285,22 @@ fn a_member_that_fails_is_a_row_of_its_own() {
     assert!(reasons.contains(",20.0,"), "{reasons}");
 }
 
+/// A step of rk4 takes a momentum of size w to one of the order of 1e-13 w^16, the square of which is beyond a double.
+#[test]
+fn a_member_whose_errors_are_beyond_a_double_fails() {
+    let scratch = Scratch::new("ensemble-beyond");
+    scratch.file("members.csv", "omega_x,omega_y,omega_z\n0,0,0\n1e12,1e12,1e12\n");
+    let spec = "[body]\nmoments = [1, 2, 2.5]\n[spread]\nmembers_file = \"members.csv\"\n[run]\n\
+                method = \"rk4\"\nstep = 0.5\ntimes = [0, 0.5]\n";
+    scratch.file("spec.toml", spec);
+    let answer = polhode(&words("ensemble spec.toml --out out"), &scratch.0);
+    assert!(answer.code == 0 && answer.err.contains("1 of 2 members failed"), "{}", answer.err);
+    let out = scratch.0.join("out");
+    assert_eq!(column(&out, "failures.csv", "t"), [0.5]);
+    assert_eq!(column(&out, "summary.csv", "members"), [2.0, 1.0]);
+    assert_eq!(column(&out, "summary.csv", "energy_error_max"), [0.0, 0.0]);
+}
+
 #[test]
 fn rows_of_members_that_are_left_out_are_told() {
     let scratch = Scratch::new("ensemble-fewer");
