@@ -36,10 +36,12 @@ pub(super) fn verified(shard: &Finished) -> Result<Shares, Error> {
     array(shard, ATTITUDES, shard.attitudes()?, |place, q: &[f64; 4]| {
         let norm = q.iter().map(|x| x * x).sum::<f64>().sqrt();
         let has_failed = missing.get(&place.member).is_some_and(|from| place.time >= *from);
-        if !norm.is_finite() {
+        if q.iter().any(|x| !x.is_finite()) {
             Some("is not finite".into())
-        } else if norm == 0.0 {
+        } else if *q == [0.0; 4] {
             (!has_failed).then(|| format!("is zero, although {FAILURES}.csv does not name the member"))
+        } else if has_failed {
+            Some(format!("is not zero, although {FAILURES}.csv names the member"))
         } else if unit && (norm - 1.0).abs() > NORM {
             Some(format!("has the norm {norm}, not 1"))
         } else {

@@ -387,6 +387,17 @@ fn numbers_of_a_shard_that_cannot_be_are_named() {
     );
     // failures that do not add up
     expect("failures.csv", b"member,t,reason\n151,0.0,lost\n", "it names 1 members, and run.toml 0");
+    // a row of a member that has none
+    let lost = b"member,t,reason\n151,1.0,lost\n";
+    let kept = fs::read(shard.join("failures.csv")).unwrap();
+    fs::write(shard.join("failures.csv"), lost).unwrap();
+    let failed = record.replace("\nfailed = 0\n", "\nfailed = 1\n");
+    fs::write(&mark, resealed(&failed, "failures.csv", &sha256(lost))).unwrap();
+    let told = refusal(&scratch, "gather out");
+    let says = "attitudes.npy: row 2 of member 151 is not zero, although failures.csv names the member";
+    assert!(told.contains(says), "{told}");
+    fs::write(shard.join("failures.csv"), kept).unwrap();
+    fs::write(&mark, &record).unwrap();
     // times of other rows
     let errors = fs::read_to_string(shard.join("errors.csv")).unwrap().replace("\n100.0,", "\n101.0,");
     expect("errors.csv", errors.as_bytes(), "row 3 is of t = 101, and that of shard 1 of t = 100");
