@@ -1,5 +1,6 @@
 //! `polhode gather`: the shards of an ensemble, made into the results of one run.
 
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -7,7 +8,7 @@ use polhode_files::error::{Error, unexpected};
 use polhode_files::npy;
 use polhode_pages::output::{MARK, Output, unwritable};
 
-use super::folder::{ERRORS, Finished, finished};
+use super::folder::{ERRORS, Finished, finished, record_of_results};
 use super::record::{Identity, Record};
 use super::reduce::{self, reduce};
 use super::results::Results;
@@ -83,9 +84,26 @@ impl Gather {
             outputs.push(output);
         }
         // without its record a folder of results is not whole; the new one comes last
-        let mark = self.folder.join(MARK);
-        if mark.exists() {
-            std::fs::remove_file(&mark).map_err(|error| unwritable("gather", &mark, &error))?;
+        let other = record_of_results(&self.folder)?.filter(Record::is_results);
+        let remove = |name: &str| match std::fs::remove_file(self.folder.join(name)) {
+            Err(error) if error.kind() != ErrorKind::NotFound => {
+                Err(unwritable("gather", &self.folder.join(name), &error))
+            }
+            _ => Ok(()),
+        };
+        remove(MARK)?;
+        // what other results had, and these have not, would be taken for theirs
+        if other.is_some() {
+            for (name, is_written) in [
+                (ATTITUDES, identity.attitudes),
+                (OMEGAS, identity.omegas),
+                ("observer.csv", !identity.observer.is_empty()),
+                ("passages.csv", identity.event.is_some()),
+            ] {
+                if !is_written {
+                    remove(name)?;
+                }
+            }
         }
         for output in outputs {
             output.finish()?;
@@ -207,8 +225,10 @@ fn together(shards: &[Finished]) -> Result<Shares, Error> {
     Ok(all)
 }
 
-/// Whether a folder holds results of the run `identity`.
+/// Whether a folder holds results of the run `identity`, with every file that its record names.
 pub(super) fn has_results(folder: &Path, identity: &Identity) -> Result<bool, Error> {
-    let record = super::folder::record_of_results(folder)?;
-    Ok(record.is_some_and(|record| record.is_results() && record.identity == *identity))
+    let record = record_of_results(folder)?.filter(|record| record.identity == *identity);
+    Ok(record.is_some_and(|record| {
+        record.is_results() && record.files.keys().all(|name| folder.join(name).is_file())
+    }))
 }

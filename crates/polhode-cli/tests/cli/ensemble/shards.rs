@@ -110,6 +110,28 @@ fn what_is_finished_is_not_run_again() {
         assert_eq!(written(), first);
     }
     assert_eq!(names(&scratch.0.join("out/shards")), ["2-of-3"]);
+    // results that have lost a file are no results
+    let whole = contents(&scratch.0.join("whole"));
+    fs::remove_file(scratch.0.join("whole/summary.csv")).unwrap();
+    done("ensemble spec.toml --out whole", &scratch);
+    assert!(contents(&scratch.0.join("whole")) == whole);
+}
+
+#[test]
+fn gathering_leaves_no_file_of_other_results_beside_its_own() {
+    let scratch = Scratch::new("ensemble-stale");
+    scratch.file("both.toml", format!("{EXACT}[event]\nfirst = \"rate > 2rad/s\"\n"));
+    scratch.file("one.toml", format!("{EXACT}[output]\narrays = [\"attitudes\"]\n"));
+    assert_eq!(polhode(&words("ensemble both.toml --out out"), &scratch.0).code, 0);
+    scratch.file("out/notes.txt", "mine");
+    for k in [1, 2] {
+        done(&format!("ensemble one.toml --out out --shard {k}/2"), &scratch);
+    }
+    done("gather out", &scratch);
+    assert_eq!(fs::read(scratch.0.join("out/notes.txt")).unwrap(), b"mine");
+    fs::remove_file(scratch.0.join("out/notes.txt")).unwrap();
+    done("ensemble one.toml --out whole", &scratch);
+    assert!(contents(&scratch.0.join("out")) == contents(&scratch.0.join("whole")));
 }
 
 #[test]
