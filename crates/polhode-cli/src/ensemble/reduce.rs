@@ -6,6 +6,8 @@ use polhode::rotation::{Directions, Dispersion, Quat, Vec3};
 use polhode_experiments::parallel;
 use polhode_files::npy::Array;
 
+use super::verify::NORM;
+
 /// Memory for the members of one time, bytes a member: attitudes as read, as quaternions, their angles.
 const BYTES: u64 = 32 + 32 + 8;
 /// The same of directions to an observer, and their angles.
@@ -55,6 +57,17 @@ fn bytes(is_observed: bool) -> u64 {
     BYTES + if is_observed { BYTES_OF_OBSERVER } else { 0 }
 }
 
+/// The attitude of a quaternion of any norm but zero, which would be its weight in the mean. One that is 1 to rounding stays as it is.
+fn attitude(components: [f64; 4]) -> Quat<f64> {
+    let q = Quat::from_components(components);
+    if (q.norm_squared() - 1.0).abs() <= NORM {
+        return q;
+    }
+    // squares may leave the range of a double
+    let largest = q.magnitude();
+    Quat::from_components(components.map(|x| x / largest)).normalized()
+}
+
 /// Every time of the arrays, whose members follow each other; `None` where no member has a row.
 ///
 /// The numbers depend on the members and their order only: not on where one array ends and the next begins, nor on threads.
@@ -83,7 +96,7 @@ pub(super) fn reduce(
             for array in arrays.iter_mut() {
                 // zeros stand where a member has no row
                 let rows = array.entries(time)?.filter(|q| *q != [0.0; 4]);
-                slab.extend(rows.map(Quat::from_components));
+                slab.extend(rows.map(attitude));
             }
             slabs.push((slab, observer.get(time as usize)));
         }

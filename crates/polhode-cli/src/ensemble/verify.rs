@@ -13,7 +13,7 @@ use super::folder::{FAILURES, Finished};
 use super::work::{ATTITUDES, OMEGAS, Shares};
 
 /// What rounding makes of a norm of 1 at most, by a method that keeps it: the random walk of 2^53 steps, half an ulp each.
-const NORM: f64 = 1e-8;
+pub(super) const NORM: f64 = 1e-8;
 
 /// Largest errors and failures of a shard of which nothing contradicts its record.
 ///

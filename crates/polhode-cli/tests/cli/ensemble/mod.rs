@@ -285,6 +285,25 @@ fn a_member_that_fails_is_a_row_of_its_own() {
     assert!(reasons.contains(",20.0,"), "{reasons}");
 }
 
+/// A step of explicit Euler takes the quaternion 1 of a ball with ω = 2/h about z to 1 + k: a quarter of a turn, of norm √2.
+#[test]
+fn a_quaternion_weighs_the_same_whatever_norm_a_method_leaves_it() {
+    let scratch = Scratch::new("ensemble-norm");
+    scratch.file("members.csv", "omega_x,omega_y,omega_z\n0,0,0\n0,0,2\n");
+    let spec = "[body]\nmoments = [1, 1, 1]\n[spread]\nmembers_file = \"members.csv\"\n[run]\n\
+                method = \"explicit-euler\"\nstep = 1\ntimes = [1]\n";
+    scratch.file("spec.toml", spec);
+    done("ensemble spec.toml --out out", &scratch);
+    let out = scratch.0.join("out");
+    let (_, attitudes) = array(&out.join("attitudes.npy"));
+    assert_eq!(attitudes[4..], [1.0, 0.0, 0.0, 1.0]);
+    // the mean is half way between them
+    for name in ["angle_rms", "angle_p50", "angle_max"] {
+        let angle = column(&out, "summary.csv", name)[0];
+        assert!((angle - core::f64::consts::FRAC_PI_4).abs() < 1e-14, "{name}: {angle}");
+    }
+}
+
 /// A step of rk4 takes a momentum of size w to one of the order of 1e-13 w^16, the square of which is beyond a double.
 #[test]
 fn a_member_whose_errors_are_beyond_a_double_fails() {
