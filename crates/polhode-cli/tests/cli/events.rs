@@ -125,6 +125,7 @@ fn what_is_no_event_is_refused() {
     with("nearest(0,0,0,0)", "--until 10", &["zero"]);
     with("flip", "--times 1,2", &["--times", "give --until T"]);
     with("flip", "--every 1", &["--until: missing"]);
+    with("flip", "--until 10 --times-column 3", &["--times-column: '3'", "--times names none"]);
     with("flip", "--until -1", &["--until", "does not come after the start"]);
     with("flip", "--until 10 --every 0", &["--every", "positive"]);
     with("flip", "--until 1e9 --every 1e-9", &["--every", "are too many"]);

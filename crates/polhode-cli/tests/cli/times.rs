@@ -192,6 +192,10 @@ fn the_attitude_of_the_catalogue_stays_unless_another_is_given() {
     let dated = |epoch: &str| run(&format!("propagate --body toutatis --epoch {epoch} --times 1992-11-10"));
     assert_eq!(dated("1992-11-09T17:49:47").err, "");
     assert!(dated("1992-11-09T17:50").err.contains("published start is of 1992-11-09T17:49:47 UTC"));
+    // it is the date of --start-time that counts, not that of t = 0
+    assert_eq!(dated("1992-11-08T17:49:47 --start-time 1992-11-09T17:49:47").err, "");
+    let late = dated("1992-11-09T17:49:47 --start-time 6h").err;
+    assert!(late.contains("that of --start-time, +21600 s from there"), "{late}");
 }
 
 #[test]

@@ -89,17 +89,17 @@ impl TimeArguments {
         self.moment("--start-time", &self.start_time)
     }
 
-    /// Says so where t = 0 is another date than that of the `published` start; a date without a scale is taken in that of the other.
+    /// Says so where --start-time is another date than that of the `published` start; a date without a scale is taken in that of the
+    /// other.
     pub(crate) fn compare_epoch(&self, published: &str) {
         let (Some(Epoch { date: given, .. }), Ok(date)) = (self.epoch(), published.parse::<Date>()) else {
             return;
         };
         let given = date.scale().map_or(given, |scale| given.or_in(scale));
-        let later = given.seconds_since(&date).unwrap_or(f64::INFINITY);
+        let later = given.seconds_since(&date).unwrap_or(f64::INFINITY) + self.start().unwrap_or_default();
         if later != 0.0 {
             warn(&format!(
-                "--epoch: the published start is of {published}; here it is that of --start-time, {:+.0} s from there",
-                later + self.start().unwrap_or_default()
+                "--epoch: the published start is of {published}; here it is that of --start-time, {later:+.0} s from there"
             ));
         }
     }
@@ -116,6 +116,7 @@ impl TimeArguments {
 
     /// The start and --until, between which something is looked for.
     pub(crate) fn span(&self) -> Result<[f64; 2], Error> {
+        self.check_column()?;
         match (&self.times, &self.until) {
             (None, Some(until)) => Ok([self.start()?, self.moment("--until", until)?]),
             (Some(_), _) => Err(Error::Input(
@@ -127,14 +128,20 @@ impl TimeArguments {
         }
     }
 
-    /// The output times. Those of a file are read again with each pass.
-    pub(crate) fn output(&self) -> Result<OutputTimes, Error> {
+    /// Refuses the name of a column where --times names no file.
+    fn check_column(&self) -> Result<(), Error> {
         if let Some(column) = &self.times_column
             && !matches!(self.times, Some(Times::File(_) | Times::Standard))
         {
             let rule = "names a column of a file, and --times names none";
             return Err(Error::input("--times-column", column, rule, "give --times FILE, or leave it out"));
         }
+        Ok(())
+    }
+
+    /// The output times. Those of a file are read again with each pass.
+    pub(crate) fn output(&self) -> Result<OutputTimes, Error> {
+        self.check_column()?;
         match (&self.times, &self.until, self.every) {
             (Some(Times::List(list)), ..) => {
                 let each = list.iter().enumerate().map(|(k, text)| {
