@@ -29,17 +29,17 @@ impl Propagate {
         });
         let events: Vec<Event> = events.collect::<Result<_, Error>>()?;
         let spacing = self.spacing(body, &start, to - from)?;
-        let found = if self.method == "exact" {
+        let (found, sense) = if self.method == "exact" {
             let motion = self.exact_motion(body, start)?;
             let found = motion.events(&events, 0.0, to - from, spacing);
-            found.map_err(|error| Error::Input(format!("{}: {error}", flag_of(&error))))?
+            (found.map_err(|error| Error::Input(format!("{}: {error}", flag_of(&error))))?, Ok(()))
         } else {
             self.along_run(body, start, &events, [from, to, spacing])?
         };
         let origin = if self.method == "exact" { from } else { 0.0 };
         self.write_events(body, &columns, &found, Dd::from(origin))?;
         self.tell_of_events(&found, [from, to]);
-        Ok(())
+        sense
     }
 
     /// Time between looks, s.
@@ -56,24 +56,29 @@ impl Propagate {
         }
     }
 
+    /// What happens along the run, and whether its numbers are those of a rotation to the end.
     fn along_run(
         &self,
         body: &Body,
         start: Point<Dd>,
         events: &[Event],
         [from, to, spacing]: [f64; 3],
-    ) -> Result<Events, Error> {
+    ) -> Result<(Events, Result<(), Error>), Error> {
         let method = self.stepping_method()?;
         let h = self.step_or(method.tolerance().map(|_| spacing))?;
         let steps = (to - from) / h;
         cost::check("--step", h, steps, "take a larger step or an earlier time")?;
+        if method.tolerance().is_none() {
+            cost::warn_coarse("--step", h, body.omega_of(&start).norm());
+        }
         let clock = Clock { start: from, step: h };
         cost::announce(method.as_ref(), body, start.to_f64(), clock, steps as u64);
         let mut run = run_of(method.as_ref(), body, start, clock)?.watching(Watch::Never);
-        run.events(events, to, spacing).map_err(|error| match error {
+        let found = run.events(events, to, spacing).map_err(|error| match error {
             RunError::Event(error) => Error::Input(format!("{}: {error}", flag_of(&error))),
             error => self.ended(error),
-        })
+        })?;
+        Ok((found, self.check_sense(&run.sample())))
     }
 
     /// A row of each, whose times count from `origin`.

@@ -112,6 +112,19 @@ fn what_rows_do_not_say_is_said_beside_them() {
     assert!(said.contains("within 0.01 s may be missed"), "{said}");
 }
 
+/// Of a turn by h ω a step Euler's method stretches the quaternion by √(1 + (h ω/2)²), here to 1.8 in 20 steps.
+#[test]
+fn events_of_numbers_that_are_no_rotation_fail() {
+    let event = "--event 'rate > 0.5rad/s'";
+    let answer = run(&format!("{BODY} --until 10 {event} --method explicit-euler --step 0.5"));
+    assert_eq!((answer.code, answer.out.lines().count()), (1, 2), "{answer:?}");
+    for part in ["--method explicit-euler", "the quaternion", "no longer describe the motion"] {
+        assert!(answer.err.contains(part), "{}", answer.err);
+    }
+    let coarse = run(&format!("{BODY} --until 10 {event} --method rk4 --step 2"));
+    assert!(coarse.err.contains("--step: '2': turns the body by 2.0 rad per step"), "{}", coarse.err);
+}
+
 #[test]
 fn what_is_no_event_is_refused() {
     let with = |event: &str, flags: &str, says: &[&str]| {
