@@ -22,6 +22,7 @@ use polhode_pages::table::{Format, Table};
 use crate::flags::attitude::{check_used, of_order};
 use crate::flags::motion::MotionArguments;
 use crate::flags::table::{Order, TableArguments};
+use crate::flags::times::span_until;
 use crate::plot::Picture;
 use entries::{Entry, Positives, positives};
 use trajectory::Trajectory;
@@ -103,7 +104,7 @@ impl Compare {
         self.motion.start.check_angles(false, false)?;
         let body = self.motion.body(self.start_time)?;
         let start = self.motion.start(&body, self.start_time)?;
-        let span = self.span()?;
+        let span = span_until(self.start_time, self.until)?;
         self.table.check_read(!self.trajectory.is_empty(), "--trajectory FILE")?;
         let entries = self.entries(span)?;
         let speed = body.omega_of(&start).norm();
@@ -188,15 +189,6 @@ impl Compare {
             crate::plot::write(file, picture, &figure.page())?;
         }
         output.write_whole(&Format::of(self.format, self.out.as_deref())?.write(&table))
-    }
-
-    fn span(&self) -> Result<f64, Error> {
-        let span = self.until - self.start_time;
-        if span > 0.0 && span.is_finite() {
-            return Ok(span);
-        }
-        let rule = format!("must come after the start, t = {}", short(self.start_time));
-        Err(Error::input("--until", &short(self.until), &rule, "give a later time"))
     }
 
     fn judged(&self, truth: &Truth, entry: &Entry) -> Result<(Judged, StepTime), Error> {

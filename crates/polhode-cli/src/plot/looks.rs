@@ -33,7 +33,7 @@ pub(crate) struct Course<'a> {
     pub(crate) step: Option<f64>,
     pub(crate) tolerance: Option<f64>,
     pub(crate) start_time: f64,
-    /// s after the start.
+    /// The end by the same clock, s; it comes after the start.
     pub(crate) until: f64,
     /// Whether one round of a closed polhode is enough.
     pub(crate) one_round: bool,
@@ -42,6 +42,13 @@ pub(crate) struct Course<'a> {
     pub(crate) most: u64,
     /// What messages call the flags of method and step.
     pub(crate) flags: Flags,
+}
+
+impl Course<'_> {
+    /// From the start to the end, s.
+    pub(crate) fn span(&self) -> f64 {
+        self.until - self.start_time
+    }
 }
 
 /// Names of the flags of a course.
@@ -174,9 +181,9 @@ impl Looks {
             return Err(without_tolerance(course, tolerance));
         }
         let refused = |error| Error::Input(format!("--until: '{}': {error}", short(course.until)));
-        exact.check_time(course.until).map_err(refused)?;
+        exact.check_time(course.span()).map_err(refused)?;
         // a polhode is closed, and one round of it is all there is to see
-        let mut span = course.until;
+        let mut span = course.span();
         if let (true, ExactMotion::Free(motion)) = (course.one_round, exact) {
             let period = motion.character().ok().and_then(|character| character.polhode_period);
             span = period.map_or(span, |period| span.min(period));
@@ -213,8 +220,8 @@ impl Looks {
         };
         let adaptive = method.tolerance().is_some();
         let speed = self.body.omega_of(&start).norm();
-        let regular = (PER_RADIAN * speed * course.until).clamp(course.fewest as f64, course.most as f64);
-        let interval = adaptive.then(|| course.until / libm::ceil(regular));
+        let regular = (PER_RADIAN * speed * course.span()).clamp(course.fewest as f64, course.most as f64);
+        let interval = adaptive.then(|| course.span() / libm::ceil(regular));
         let Some(step) = course.step.or(interval) else {
             let rule = format!("missing: {} needs a step in seconds", course.method);
             return Err(Error::input(course.flags.step, "", &rule, "give --step h"));
@@ -231,7 +238,7 @@ impl Looks {
                     if matches!(error, RunError::Step(_)) { course.flags.method } else { course.flags.step };
                 Error::Input(format!("{flag}: {error}"))
             })?;
-        let turn = speed * course.until;
+        let turn = speed * course.span();
         let trial = if adaptive && speed > 0.0 {
             cost::check_turn("--until", course.until, turn)?;
             (Clock { step: step.min(1.0 / speed), ..clock }, libm::ceil(turn) as u64)
@@ -308,13 +315,13 @@ impl Looks {
 
 /// The number of steps to the end.
 fn whole_steps(course: &Course, clock: Clock) -> Result<u64, Error> {
-    let end = course.start_time + course.until;
+    let end = course.until;
     let step = short(clock.step);
     match Schedule::at_times(clock, &[end]) {
         Ok(schedule) => Ok(schedule.into_iter().last().unwrap_or(0)),
         Err(ScheduleError::NotReached { nearest, .. }) => {
             let rule = format!("no whole number of steps leads to the end {}", short(end));
-            let remedy = format!("take --until {}", short(nearest - course.start_time));
+            let remedy = format!("take --until {}", short(nearest));
             Err(Error::input(course.flags.step, &step, &rule, &remedy))
         }
         Err(error) => Err(Error::Input(format!("{}: '{step}': {error}", course.flags.step))),

@@ -16,6 +16,7 @@ use polhode_pages::figure::Canvas;
 use polhode_pages::output::Output;
 
 use crate::flags::motion::MotionArguments;
+use crate::flags::times::span_until;
 use looks::{Course, Flags, Looks};
 
 const USAGE: &str = "polhode plot <KIND> <BODY> [START] --until <T> --out <FILE> [OPTIONS]
@@ -104,7 +105,7 @@ pub(crate) struct Plot {
     #[command(flatten)]
     pub(crate) motion: MotionArguments,
     /// End of the motion: s, or with a unit (ms, min, h, d)
-    #[arg(long, value_name = "T", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Motion")]
+    #[arg(long, value_name = "T", value_parser = duration, allow_hyphen_values = true, help_heading = "Motion")]
     until: f64,
     /// Time of the start: s, or with a unit; forces may depend on it
     #[arg(long, value_name = "t0", value_parser = duration, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Motion")]
@@ -198,6 +199,7 @@ impl Plot {
         if self.size.is_some() && picture == Picture::Html {
             return Err(Error::Input("--size: only .svg and .png have a size; leave it out".into()));
         }
+        span_until(self.start_time, self.until)?;
         let file = Output::to_file("--out", &self.out)?;
         let looks = Looks::of(&self.course())?;
         if !looks.is_resolved() {

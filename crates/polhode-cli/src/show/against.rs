@@ -135,9 +135,9 @@ impl Show {
         let mut until = course.until;
         if let Some(step) = step {
             // whole steps, as many as there is room for
-            let steps = libm::floor(until / step * (1.0 + 4.0 * f64::EPSILON));
+            let steps = libm::floor(course.span() / step * (1.0 + 4.0 * f64::EPSILON));
             if steps < 1.0 {
-                let rule = format!("the step is longer than the motion, {} s", short(until));
+                let rule = format!("the step is longer than the motion, {} s", short(course.span()));
                 return Err(Error::input(
                     "--against",
                     typed,
@@ -145,7 +145,7 @@ impl Show {
                     "take a smaller step, or a later --until",
                 ));
             }
-            until = steps * step;
+            until = course.start_time + steps * step;
         }
         let own = Course { method: name, step, tolerance: None, until, most: MOST, flags: FLAGS, ..*course };
         let looks = Looks::of(&own)?;
@@ -182,7 +182,7 @@ impl Show {
         upright: UnitQuaternion<f64>,
         first: &Track,
     ) -> Result<Rival, Error> {
-        let (start, end) = (course.start_time, course.start_time + course.until);
+        let (start, end) = (course.start_time, course.until);
         let order = self.quaternion.map(Into::into);
         let read = Trajectory::read(path, &self.table, order, &looks.body, (start, end))?;
         let refused =
@@ -212,7 +212,7 @@ impl Show {
             short(found.times.last().copied().unwrap_or(t))
         );
         if let Some(&last) = found.times.last()
-            && last < end - 1e-9 * course.until
+            && last < end - 1e-9 * course.span()
         {
             found.ending = Some((last, "ends".into()));
         }

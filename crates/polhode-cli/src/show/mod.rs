@@ -21,6 +21,7 @@ use polhode_pages::scene::{Scene, Track};
 use crate::flags::attitude::{check_used, of_order};
 use crate::flags::motion::MotionArguments;
 use crate::flags::table::{Order, TableArguments};
+use crate::flags::times::span_until;
 use crate::plot::animation::track;
 use crate::plot::looks::{Course, FEWEST, Flags, Looks};
 use crate::plot::poinsot::Construction;
@@ -67,7 +68,7 @@ pub(crate) struct Show {
     #[command(flatten)]
     pub(crate) motion: MotionArguments,
     /// End of the motion: s, or with a unit (ms, min, h, d) [default: that of the file of --against, else some turns or flips]
-    #[arg(long, value_name = "T", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Motion")]
+    #[arg(long, value_name = "T", value_parser = duration, allow_hyphen_values = true, help_heading = "Motion")]
     until: Option<f64>,
     /// Time of the start: s, or with a unit; forces may depend on it
     #[arg(long, value_name = "t0", value_parser = duration, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Motion")]
@@ -115,10 +116,11 @@ impl Show {
         let until = match self.until {
             Some(until) => until,
             None => match against::last_time(&against, &self.table.reading(None))? {
-                Some(last) if last > self.start_time => last - self.start_time,
-                _ => span::span(&body, &start)?,
+                Some(last) if last > self.start_time => last,
+                _ => self.start_time + span::span(&body, &start)?,
             },
         };
+        span_until(self.start_time, until)?;
         let chosen = match ExactMotion::from_point(&body, start) {
             Ok(_) => "exact",
             Err(_) => "taylor",
@@ -164,7 +166,8 @@ impl Show {
             looks.turn(),
             looks.times.len()
         );
-        let earlier = format!("--until {}", span::rounded(0.7 * course.until * RESOLVED / looks.turn()));
+        let span = span::rounded(0.7 * course.span() * RESOLVED / looks.turn());
+        let earlier = format!("--until {}", course.start_time + span);
         Err(Error::input(
             "--until",
             &short(course.until),

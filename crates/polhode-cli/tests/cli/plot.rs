@@ -175,6 +175,11 @@ fn the_animation_needs_no_network_and_holds_the_motion() {
     assert!(
         ["omega", "momentum", "polhode", "herpolhode"].iter().all(|name| page.scene["shown"][name] == true)
     );
+    // the end is by the clock of the start
+    let answer = polhode(&words(&format!("plot poinsot {FREE} --start-time 4 --out later.html")), &scratch.0);
+    assert_eq!((answer.code, answer.err.as_str()), (0, ""));
+    let times = Page::read(&scratch.0.join("later.html")).body().times;
+    assert!(times[0] == 4.0 && (times[times.len() - 1] - 20.0).abs() < 1e-12, "{times:?}");
 }
 
 #[test]
@@ -221,6 +226,10 @@ fn what_cannot_be_drawn_is_refused_with_what_can() {
     refused(&with("omega", "--view 30,20 --out a.svg"), &["--view: only polhode, trace and"]);
     refused(&with("poinsot", "--view 30,20 --out a.html"), &["--view: only polhode, trace and"]);
     refused(&with("poinsot", "--size wide --out a.html"), &["--size: only .svg and .png"]);
+    refused(
+        &with("omega", "--start-time 5 --out a.svg"),
+        &["--until: '5'", "must come after the start, t = 5"],
+    );
     refused(&with("omega", "--step 0.1 --out a.svg"), &["--step", "exact takes no step"]);
     refused(&with("omega", "--tolerance 1e-9 --out a.svg"), &["--tolerance", "takes no --tolerance"]);
     refused(&with("omega", "--method rk4 --out a.svg"), &["--step: missing: rk4 needs a step"]);

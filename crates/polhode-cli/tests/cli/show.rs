@@ -150,6 +150,26 @@ fn a_file_is_shown_at_its_own_times() {
 }
 
 #[test]
+fn the_end_is_by_the_clock_of_the_start() {
+    let scratch = Scratch::new("show-clock");
+    let start = "--moments 1,2,3 --omega 0.4,1,-0.3 --start-time 5";
+    let line = format!("propagate {start} --until 15 --every 0.25 --fields t,q --out run.csv");
+    assert_eq!(polhode(&words(&line), &scratch.0).code, 0);
+    for until in ["", "--until 15"] {
+        let page = silently(&scratch, &format!("{start} {until} --against run.csv --against rk4:0.25"));
+        for track in [page.body(), page.rival(0), page.rival(1)] {
+            let ends = [track.times[0] - 5.0, track.times[track.times.len() - 1] - 15.0];
+            assert!(ends.iter().all(|off| off.abs() < 1e-12), "{until} {}: {ends:?}", track.name);
+        }
+        assert!(page.rival(0).angles.iter().all(|angle| *angle < 1e-7), "{until}");
+    }
+    refused(
+        &format!("show {start} --until 5 --out a.html"),
+        &["--until: '5'", "must come after the start, t = 5"],
+    );
+}
+
+#[test]
 fn every_body_of_the_catalogue_has_a_page() {
     let scratch = Scratch::new("show-catalogue");
     let mut found = String::new();

@@ -8,6 +8,7 @@ use clap::Args;
 use polhode::units::{Date, TimeScale};
 use polhode_files::error::{Error, warn};
 use polhode_files::instant::{Epoch, date, duration, is_moment, seconds, time_scale};
+use polhode_files::text::short;
 use polhode_files::times::{Asked, Source, TimesColumn};
 
 pub(crate) use regular::{Regular, regular};
@@ -183,6 +184,19 @@ impl TimeArguments {
             Error::Input(format!("{flag}: '{}': {error}", polhode_files::text::visible(text)))
         })
     }
+}
+
+/// The time from the start to --until, s.
+///
+/// # Errors
+/// An end that does not come after the start.
+pub(crate) fn span_until(start_time: f64, until: f64) -> Result<f64, Error> {
+    let span = until - start_time;
+    if span > 0.0 && span.is_finite() {
+        return Ok(span);
+    }
+    let rule = format!("must come after the start, t = {}", short(start_time));
+    Err(Error::input("--until", &short(until), &rule, "give a later time"))
 }
 
 /// The times in the file `path`, s, that is named at `place` of a specification, its column by the key `times_column`.
