@@ -35,9 +35,12 @@ impl MotionArguments {
     /// The body with all that acts on it, of a motion that starts at the time `t`, s.
     pub(crate) fn body(&self, t: f64) -> Result<Body, Error> {
         self.body.check_size(self.forces.is_sized() || self.wheels.is_any())?;
-        let own = self.body.own_orbit().map(|(orbit, _)| orbit);
+        let own = self.body.own_orbit().filter(|_| !self.forces.has_orbit());
+        if let Some((_, primary)) = &own {
+            self.start.check_no_frame(primary)?;
+        }
         let (body, of_file) = self.body.heavy(self.forces.weight_moment)?;
-        let body = self.forces.act_on(body, own)?;
+        let body = self.forces.act_on(body, own.map(|(orbit, _)| orbit))?;
         self.wheels.carried(body, of_file, t, |held| self.start(held, t))
     }
 

@@ -170,6 +170,17 @@ impl StartArguments {
         Ok(())
     }
 
+    /// Refuses axes of space beside the catalogue's orbit about `primary`, which has its own.
+    pub(crate) fn check_no_frame(&self, primary: &str) -> Result<(), Error> {
+        let named = self.frame.map(|frame| ("--frame", frame));
+        let Some((flag, frame)) = named.or(self.to_frame.map(|frame| ("--to-frame", frame))) else {
+            return Ok(());
+        };
+        let rule = format!("the gravity gradient of {primary} acts, on an orbit in other axes");
+        let remedy = "leave it out, or give the orbit in these axes by --orbit and --orbit-plane";
+        Err(Error::input(flag, frame.name(), &rule, remedy))
+    }
+
     /// Says what the attitude refers to where it is that of the catalogue, and which density a mesh has.
     pub(crate) fn note(&self, body: &BodyArguments) {
         if let Some(file) = body.mesh() {

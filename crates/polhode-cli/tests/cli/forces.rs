@@ -1,6 +1,6 @@
 //! What acts on a body, by its flags: rows, golden refusals, and the column of Jacobi's constant.
 
-use crate::harness::{Scratch, golden, output, polhode, run, words};
+use crate::harness::{Scratch, golden, output, polhode, refused, run, words};
 
 const BODY: &str = "propagate --moments 1,2,2.5 --omega 0.3,1,-0.4";
 
@@ -79,6 +79,11 @@ fn a_body_of_the_catalogue_is_turned_on_its_orbit() {
     let typed = of(&format!("--orbit {:e},{:e},{e},{:e}", n * n, 1.0 - e, -anomaly / n));
     let apart = |other: &[f64]| own.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(apart(&typed) < 1e-10, "{own:?} {typed:?}");
+    // its axes are neither the ecliptic nor those of the ICRF
+    for (flag, frame) in [("--frame ecliptic", "ecliptic J2000"), ("--to-frame icrf", "ICRF")] {
+        let line = format!("propagate --body hyperion --attitude 1,0,0,0 {flag} --times 20d --method taylor");
+        refused(&line, &[frame, "the gravity gradient of Saturn acts", "--orbit-plane"]);
+    }
     // another orbit takes its place
     assert!(apart(&of(&format!("--gravity-gradient {n:e},{e}"))) > 1e-3);
     let free = output("propagate --moments 0.314,0.474,0.542 --omega 1e-5,2e-6,6e-6 --times 20d --fields q");
