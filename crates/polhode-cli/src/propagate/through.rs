@@ -27,7 +27,7 @@ impl Propagate {
             ));
         }
         let columns = Columns::of_states(&self.fields, self.asked()?, body)?;
-        let attitudes = read(file)?;
+        let attitudes = read(file, self.times.epoch().is_some())?;
         let turns = self.turns.unwrap_or(1.0);
         let refused = |error: ThroughError| {
             let flag = match error {
@@ -82,8 +82,8 @@ impl Propagate {
     }
 }
 
-/// Times and attitudes of a file.
-fn read(file: &Path) -> Result<Vec<(f64, UnitQuaternion<f64>)>, Error> {
+/// Times and attitudes of a file; whether t = 0 has a date.
+fn read(file: &Path, has_epoch: bool) -> Result<Vec<(f64, UnitQuaternion<f64>)>, Error> {
     let name = visible(&file.display().to_string()).into_owned();
     let refused = |rule: &str, remedy: &str| Err(Error::input("--through", &name, rule, remedy));
     let found = trajectory::read(file, &ReadOptions::default())?;
@@ -95,6 +95,13 @@ fn read(file: &Path) -> Result<Vec<(f64, UnitQuaternion<f64>)>, Error> {
         let rule = format!("the columns {second} hold another attitude, which is not read");
         return refused(&rule, "write a file with one attitude");
     }
+    let (times, _) = &found.read_as.times;
+    let is_dated = times == "dates" || times == "s and ns" || times.ends_with("since 1970");
+    if has_epoch && is_dated {
+        let rule = format!("the times of {name} are {times}, and t counts from the first of them");
+        return Err(Error::input("--epoch", "", &rule, "leave it out"));
+    }
+    let unread = found.remark();
     let mut bodies = found.bodies;
     let (1, Some((_, rows))) = (bodies.len(), bodies.pop()) else {
         return refused("has several bodies", "name a file of one body");
@@ -111,6 +118,9 @@ fn read(file: &Path) -> Result<Vec<(f64, UnitQuaternion<f64>)>, Error> {
         Some(if is_inverse { unit.inverse() } else { unit })
     };
     let all: Option<Vec<_>> = rows.times.iter().zip(attitudes).map(|(t, q)| Some((*t, unit(q)?))).collect();
+    if let Some(unread) = unread {
+        warn(&format!("{name}: {unread}"));
+    }
     match all {
         Some(all) => Ok(all),
         None => refused("has a quaternion of norm 0", "leave out rows without an attitude"),

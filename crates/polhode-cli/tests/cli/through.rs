@@ -32,6 +32,19 @@ fn rows_between_attitudes_are_those_of_the_motion_itself() {
 }
 
 #[test]
+fn what_of_a_file_is_not_used_is_told_and_dates_go_with_no_other_epoch() {
+    let scratch = Scratch::new("through-heard");
+    let poses = scratch.0.join("more.csv").display().to_string();
+    output(&format!("{BODY} --omega 0.4,1,-0.3 --until 4 --every 2 --fields t,q,energy --out {poses}"));
+    let answer = run(&format!("{BODY} --through {poses} --every 0.5"));
+    assert!(answer.code == 0 && answer.err.contains("more.csv: not read: energy"), "{answer:?}");
+    let rows = "1700000000,0,1,0,0,0\n1700000001,0,0.8,0.6,0,0\n";
+    let stamped = scratch.file("stamp.csv", format!("stamp.secs,stamp.nsecs,q_w,q_x,q_y,q_z\n{rows}"));
+    let line = format!("{BODY} --through {stamped} --every 0.5 --epoch 2026-01-01 --fields jd,q");
+    refused(&line, &["--epoch: the times of", "are s and ns, and t counts from the first of them"]);
+}
+
+#[test]
 fn what_is_no_table_of_attitudes_is_refused() {
     let scratch = Scratch::new("through-refused");
     let refuse = |text: &str, flags: &str, says: &str| {
