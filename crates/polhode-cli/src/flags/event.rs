@@ -110,6 +110,12 @@ impl TypedEvent {
     }
 
     pub(crate) fn of(&self, body: &Body) -> Result<Event, Error> {
+        let [least, middle, most] = body.inertia().principal_moments();
+        if self.kind == Kind::Flip && (least == middle || middle == most) {
+            let rule = "two moments are equal, and there is no middle axis to turn over about";
+            let remedy = "name an angle, as angle(body z, space x) < 10deg";
+            return Err(Error::input("--event", &self.text, rule, remedy));
+        }
         self.made(body).map_err(|error| Error::input("--event", &self.text, &error.to_string(), FORMS))
     }
 

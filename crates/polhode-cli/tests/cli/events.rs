@@ -144,6 +144,8 @@ fn what_is_no_event_is_refused() {
     with("flip", "--until 1e9 --every 1e-9", &["--every", "are too many"]);
     with("flip", "--until 10 --fields t,energy_error", &["--fields", "energy_error", "leave it out"]);
     with("flip", "--until 10 --method rk4", &["--step: missing"]);
+    let round = "propagate --moments 1,1,2 --omega 0.3,0,1 --until 10 --event flip";
+    refused(round, &["--event: 'flip'", "there is no middle axis"]);
     assert!(run(&format!("{BODY} --until 10 --every 1 --stop")).err.contains("--event"));
     assert!(output("propagate --help").contains("angle(body z, space x) < 10deg"));
 }
