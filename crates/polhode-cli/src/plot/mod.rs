@@ -9,6 +9,7 @@ pub(crate) mod poinsot;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use polhode::method::{Claimed, method};
 use polhode_files::error::{Error, warn};
 use polhode_files::instant::{duration, positive_duration};
 use polhode_files::numbers::{numbers, positive};
@@ -271,7 +272,10 @@ impl Plot {
 
 /// What is seen, of which body, from which start on, by which method.
 pub(crate) fn title(what: &str, course: &Course, looks: &Looks) -> String {
-    let method = match (course.step.filter(|_| course.method != "exact"), course.tolerance) {
+    // the step of a method that chooses its own is the time between points
+    let has_own = method(course.method).is_ok_and(|method| method.tolerance().is_some());
+    let step = course.step.filter(|_| course.method != "exact" && !has_own);
+    let method = match (step, course.tolerance) {
         (Some(h), _) => format!("{}, h = {} s", course.method, polhode_files::text::short(h)),
         (None, Some(tolerance)) => format!("{}, tolerance {tolerance:e}", course.method),
         (None, None) => course.method.to_owned(),

@@ -209,6 +209,15 @@ fn degenerate_motions_say_what_they_are() {
 }
 
 #[test]
+fn a_title_names_the_tolerance_of_a_method_that_chooses_its_steps() {
+    let scratch = Scratch::new("plot-title");
+    let title = |method: &str| words_of(&silently(&scratch, &format!("omega {FREE} --method {method}")));
+    assert!(title("rk4 --step 0.5").contains("rk4, h = 0.5 s"));
+    let title = title("dop853 --tolerance 1e-9 --step 0.5");
+    assert!(title.contains("dop853, tolerance 1e-9") && !title.contains("h = "), "{title}");
+}
+
+#[test]
 fn what_cannot_be_drawn_is_refused_with_what_can() {
     let with =
         |kind: &str, flags: &str| format!("plot {kind} --moments 1,2,3 --omega 0.4,1,-0.3 --until 5 {flags}");
