@@ -84,7 +84,7 @@ pub fn command() -> ExitCode {
 fn run(command: Command) -> Result<(), Error> {
     match command {
         Command::Experiment(command) => command.run(),
-        Command::Propagate(propagate) => propagate.run().inspect(|()| propagate.motion.note()),
+        Command::Propagate(propagate) => propagate.run().inspect(|()| propagate.note()),
         Command::Show(show) => show.run().inspect(|()| show.motion.note()),
         Command::Motion(motion) => motion.run().inspect(|()| motion.start.note(&motion.body)),
         Command::Advise(advise) => advise.run().inspect(|()| advise.motion.note()),

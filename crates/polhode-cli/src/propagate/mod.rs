@@ -20,6 +20,7 @@ use polhode_files::numbers::{numbers, positive};
 use polhode_pages::table::{Format, RowWriter};
 
 use crate::cost;
+use crate::flags::body::note_density;
 use crate::flags::event::{TypedEvent, event};
 use crate::flags::motion::{MotionArguments, stepping_method};
 use crate::flags::times::{OutputTimes, TimeArguments};
@@ -56,7 +57,7 @@ const EXAMPLES: &str = "Examples:
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Propagate {
     #[command(flatten)]
-    pub(crate) motion: MotionArguments,
+    motion: MotionArguments,
     #[command(flatten)]
     times: TimeArguments,
     /// Rows are the times at which this happens, from the start to --until: 'flip', 'angle(body z, space x) < 10deg' (or >), 'rate > 5rad/s' (or <), or 'nearest(w,x,y,z)', the attitude nearest to that one; several times for several
@@ -116,6 +117,15 @@ impl Propagate {
             self.exact(&body, start, &times, columns)
         } else {
             self.stepped(&body, start, &times, columns)
+        }
+    }
+
+    /// Says what the start of the catalogue refers to, where it is that of the motion, and the density of a mesh.
+    pub(crate) fn note(&self) {
+        match (&self.through, self.motion.body.mesh()) {
+            (None, _) => self.motion.note(),
+            (Some(_), Some(file)) => note_density(file),
+            (Some(_), None) => {}
         }
     }
 

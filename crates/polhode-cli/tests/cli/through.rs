@@ -38,6 +38,11 @@ fn what_of_a_file_is_not_used_is_told_and_dates_go_with_no_other_epoch() {
     output(&format!("{BODY} --omega 0.4,1,-0.3 --until 4 --every 2 --fields t,q,energy --out {poses}"));
     let answer = run(&format!("{BODY} --through {poses} --every 0.5"));
     assert!(answer.code == 0 && answer.err.contains("more.csv: not read: energy"), "{answer:?}");
+    // the motion has the attitudes of the file, and none of the catalogue
+    let racket = "propagate --body racket";
+    output(&format!("{racket} --omega 0.4,1,-0.3 --until 4 --every 2 --fields t,q --out {poses}"));
+    let answer = run(&format!("{racket} --through {poses} --every 0.5"));
+    assert_eq!((answer.code, answer.notes.as_str()), (0, ""), "{answer:?}");
     let rows = "1700000000,0,1,0,0,0\n1700000001,0,0.8,0.6,0,0\n";
     let stamped = scratch.file("stamp.csv", format!("stamp.secs,stamp.nsecs,q_w,q_x,q_y,q_z\n{rows}"));
     let line = format!("{BODY} --through {stamped} --every 0.5 --epoch 2026-01-01 --fields jd,q");
