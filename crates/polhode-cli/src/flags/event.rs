@@ -73,7 +73,12 @@ fn cone(text: &str) -> Result<Kind, String> {
     let first = first.trim().strip_suffix(',').ok_or_else(form)?;
     let (body, space) = if of_body < of_space { (first, second) } else { (second, first) };
     let one = |text: &str, name: &str| axis(text.trim().strip_prefix(name).ok_or_else(form)?.trim());
-    Ok(Kind::Cone(one(body, "body")?, one(space, "space")?, limit(rest, angle_unit, "10deg")?))
+    let limit = limit(rest, angle_unit, "10deg")?;
+    let (Limit::Below(angle) | Limit::Above(angle)) = limit;
+    if !(angle > 0.0 && angle < core::f64::consts::PI) {
+        return Err("the limit of an angle of two axes must be between 0 and pi rad, 180 deg".into());
+    }
+    Ok(Kind::Cone(one(body, "body")?, one(space, "space")?, limit))
 }
 
 /// `x`, `-z`, or the components `(1,0,2)`.
@@ -182,6 +187,7 @@ mod tests {
             ("angle(body z, space x) < 10", "has no unit"),
             ("angle(body z, space x) < 10rev", "no unit of angles"),
             ("angle(body z, space x) 10deg", "a limit is missing"),
+            ("angle(body z, space x) > 190deg", "between 0 and pi rad"),
             ("rate > 5", "has no unit"),
             ("rate > 5deg", "no unit of rates"),
             ("rate > NaN rad/s", "a number is missing"),

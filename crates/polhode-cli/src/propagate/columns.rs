@@ -148,6 +148,10 @@ impl Columns {
         if places.is_empty() {
             return Err(no_such(&fields.join(",")));
         }
+        if asked.observer.is_some() && !places.iter().any(|place| matches!(ALL[*place].0, Observer(_))) {
+            let rule = "none of its columns is among --fields";
+            return Err(Error::input("--observer", "", rule, "add observer there, or leave it out"));
+        }
         Ok(Self { places, asked })
     }
 

@@ -100,7 +100,10 @@ pub(crate) struct Propagate {
 
 impl Propagate {
     pub(crate) fn run(&self) -> Result<(), Error> {
-        self.motion.start.check_angles(self.observer.is_some(), true)?;
+        let angles = ["euler", "phi", "theta", "psi"];
+        let prints_angles =
+            self.fields.is_empty() || self.fields.iter().any(|field| angles.contains(&field.as_str()));
+        self.motion.start.check_angles(self.observer.is_some(), prints_angles)?;
         let t = self.times.start()?;
         let body = self.motion.body(t)?;
         if let Some(file) = &self.through {

@@ -112,6 +112,7 @@ fn euler_angles_are_columns_and_a_start() {
     let last = |text: &str| text.rsplit(',').next().unwrap().trim().parse::<f64>().unwrap();
     assert!((last(&turned) + 0.2).abs() < 1e-15, "{turned}");
     refused(&with("--times 0 --euler zxx"), &["--euler", "zxx", "such as zxz"]);
+    refused(&with("--times 0 --euler zyx --fields t,q"), &["--euler: 'zyx'", "none are given"]);
     refused(&with("--times 0 --angles 1,2,3 --attitude 1,0,0,0"), &["--angles", "--attitude"]);
     refused(&with("--times 0 --angle-unit gon"), &["--angle-unit", "'gon'", "rad or deg"]);
 }
@@ -234,6 +235,10 @@ fn rows_have_dates_and_where_the_observer_stands() {
     );
     refused("propagate --body apophis --times 0 --observer 210,5", &["--observer: the latitude 5.0", "deg"]);
     refused("propagate --body apophis --times 0 --fields jd", &["--fields", "jd needs --epoch"]);
+    refused(
+        "propagate --body apophis --times 0 --observer 1,0 --fields t,q",
+        &["--observer: none of its columns is among --fields"],
+    );
     refused(
         "propagate --body apophis --times 0 --fields observer",
         &["--fields", "observer needs --observer"],
