@@ -200,6 +200,12 @@ impl Plot {
         if self.size.is_some() && picture == Picture::Html {
             return Err(Error::Input("--size: only .svg and .png have a size; leave it out".into()));
         }
+        if self.kind == Kind::Poinsot && self.method.starts_with("dissipating:") {
+            return Err(Error::Input(
+                "poinsot: the ellipsoid is that of a constant energy, and inner friction takes it; plot polhode or trace"
+                    .into(),
+            ));
+        }
         span_until(self.start_time, self.until)?;
         let file = Output::to_file("--out", &self.out)?;
         let looks = Looks::of(&self.course())?;

@@ -251,6 +251,8 @@ fn what_cannot_be_drawn_is_refused_with_what_can() {
     let drag = "--drag 0.1 --method rk4 --step 0.01 --out a.svg";
     refused(&with("conserved", drag), &["conserves neither energy nor angular momentum"]);
     refused(&with("poinsot", drag), &["free bodies"]);
+    let friction = "--method dissipating:0.01 --step 0.05 --out a.svg";
+    refused(&with("poinsot", friction), &["constant energy", "inner friction", "plot polhode"]);
     let rest = "--moments 1,2,3 --omega 0,0,0 --until 5 --out a.svg";
     for kind in ["polhode", "herpolhode", "poinsot"] {
         refused(&format!("plot {kind} {rest}"), &["--omega: the body is at rest"]);
