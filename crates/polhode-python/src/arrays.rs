@@ -1,7 +1,7 @@
 //! From whatever Python calls numbers to numbers, and back.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use numpy::{PyArray1, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray};
+use numpy::{PyArray1, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
 use polhode::rotation::Quat;
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
@@ -25,9 +25,11 @@ impl Numbers {
                 value.extract().map_err(|_| refused(format!("{name}: outside the range of a double")))?;
             return Ok(Numbers { name, shape: Vec::new(), values: vec![number] });
         }
-        // an array of doubles needs nothing made of it
-        let given = value.is_exact_instance_of::<PyUntypedArray>().then(|| value.extract().ok()).flatten();
-        let array: PyReadonlyArrayDyn<'_, f64> = match given {
+        // an array of doubles one after the other needs nothing made of it; between those of a field of a structured array there may be
+        // no whole number of doubles
+        let given: Option<PyReadonlyArrayDyn<'_, f64>> =
+            value.is_exact_instance_of::<PyUntypedArray>().then(|| value.extract().ok()).flatten();
+        let array = match given.filter(|array| array.is_c_contiguous() && array.data().is_aligned()) {
             Some(array) => array,
             None => as_floats(name, value)?
                 .extract()
@@ -95,19 +97,14 @@ impl Numbers {
     }
 }
 
-/// `value` as an array of doubles; what numpy would make numbers of by losing something is refused.
+/// `value` as an array of doubles one after the other; what numpy would make numbers of by losing something is refused.
 fn as_floats<'py>(name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     static ASARRAY: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
-    static FLOATS: PyOnceLock<Py<PyDict>> = PyOnceLock::new();
+    static REQUIRE: PyOnceLock<Py<PyAny>> = PyOnceLock::new();
     let py = value.py();
-    let asarray = ASARRAY
-        .get_or_try_init(py, || Ok::<_, PyErr>(py.import("numpy")?.getattr("asarray")?.unbind()))?
-        .bind(py);
-    let floats = FLOATS.get_or_try_init(py, || {
-        let options = PyDict::new(py);
-        options.set_item("dtype", "float64")?;
-        Ok::<_, PyErr>(options.unbind())
-    })?;
+    let of_numpy = |name: &str| Ok::<_, PyErr>(py.import("numpy")?.getattr(name)?.unbind());
+    let asarray = ASARRAY.get_or_try_init(py, || of_numpy("asarray"))?.bind(py);
+    let require = REQUIRE.get_or_try_init(py, || of_numpy("require"))?.bind(py);
     // what Python itself says of a want of memory, or of Ctrl-C, stays what it is
     let not_numbers = |error: PyErr| {
         let is_ours = error.is_instance_of::<pyo3::exceptions::PyException>(py)
@@ -122,7 +119,8 @@ fn as_floats<'py>(name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Bou
     let array = asarray.call1((value,)).map_err(not_numbers)?;
     let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
     match kind.as_str() {
-        "f" | "i" | "u" | "O" => asarray.call((array,), Some(floats.bind(py))).map_err(not_numbers),
+        // contiguous in the order of C, aligned, and no subclass
+        "f" | "i" | "u" | "O" => require.call1((array, "float64", "CAE")).map_err(not_numbers),
         _ => {
             let kind = array.getattr("dtype")?.str()?;
             Err(refused(format!("{name}: an array of {kind}; it must hold real numbers")))

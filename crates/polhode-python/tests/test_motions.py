@@ -33,6 +33,11 @@ def test_any_shape_of_times_and_one_time_give_the_same_bits():
     # strides, types and lists of times
     for same in (t[:, ::2], t.astype("f4"), t.astype(int), np.asfortranarray(t), t.tolist(), t.astype(">f8")):
         assert_array_equal(motion.at(same).attitude, motion.at(np.array(same, dtype=float)).attitude)
+    # 9 bytes from one to the next, and doubles at an odd address
+    packed = np.zeros(24, dtype=[("flag", "i1"), ("t", "f8")])
+    packed["t"] = t.ravel()
+    for same in (packed["t"], np.frombuffer(b"-" + t.tobytes(), offset=1)):
+        assert_array_equal(motion.at(same).t, t.ravel())
 
 
 def test_the_order_of_quaternions_is_explicit():
