@@ -4,6 +4,7 @@ use polhode::audit::{
     self, Angles, Attitudes, Convention, Direction, Frame, Noise, QuaternionOrder, Question, Turns,
     step_length,
 };
+use polhode::rotation::EulerSequence;
 use polhode::units::AngleUnit;
 use polhode_files::text::short;
 use polhode_pages::verdict::{Adviser, Outcome, json, object, panels, text};
@@ -101,8 +102,9 @@ impl Verdict {
 ///
 /// Conventions are found from the rows; what is stated by `order` (`"wxyz"`, `"xyzw"`), `direction` (`"body-to-space"`,
 /// `"space-to-body"`), `omega_frame` and `momentum_frame` (`"body"`, `"space"`), `rate_unit`, `euler` (as `"zyx"`, or
-/// `"zyx:extrinsic"`) and `angle_unit`, and the rows contradict, makes the record wrong. `any_order`: the moments may belong to the axes
-/// in any order. `tolerance`: largest error of a record that is right, rad and relative; `noise`: standard deviations that the record
+/// `"zyx:extrinsic"`; columns roll, pitch and yaw are taken by the letters) and `angle_unit`, and the rows contradict, makes the record
+/// wrong; said of columns that the record has not, it is refused. Columns that name their scalar are read by their names, whatever `order`
+/// says. `any_order`: the moments may belong to the axes in any order. `tolerance`: largest error of a record that is right, rad and relative; `noise`: standard deviations that the record
 /// has, rad, or a pair of rad and rad/s, each 0 where the record has no such columns. `advice`: whether a record that is wrong by its
 /// integrator gets a method that would do, which takes two seconds at most.
 ///
@@ -152,15 +154,35 @@ pub(crate) fn verdict_on(
         _ => return Err(refused("moments, inertia, body: give one of them")),
     };
     let mut record = Given::of(t, attitude, omega, momentum, form)?;
+    let rows = &record.rows;
+    let has_quaternions = matches!(rows.attitude, Some(Attitudes::Quaternions(_)));
+    let has_angles = matches!(rows.attitude, Some(Attitudes::Angles(_)));
+    for (name, found, is_used, what) in [
+        ("order", order, has_quaternions, "a quaternion"),
+        ("direction", direction, rows.attitude.is_some(), "an attitude"),
+        ("euler", euler, has_angles, "a triple of Euler angles"),
+        ("angle_unit", angle_unit, has_angles, "a triple of Euler angles"),
+        ("momentum_frame", momentum_frame, rows.momentum.is_some(), "an angular momentum"),
+        ("omega_frame", omega_frame, rows.rates.is_some(), "an angular velocity"),
+        ("rate_unit", rate_unit, rows.rates.is_some(), "an angular velocity"),
+    ] {
+        if let Some(found) = found.filter(|_| !is_used) {
+            return Err(refused(format!(
+                "{name}: '{found}'; it says how {what} is written, and the record has none; leave it out"
+            )));
+        }
+    }
     let claims = &mut record.claims;
     let one_of =
         |name: &str, found: &str, known: &str| refused(format!("{name}: '{found}'; it must be {known}"));
     if let Some(order) = order {
-        claims.quaternion = Some(match order {
+        let found = match order {
             "wxyz" => QuaternionOrder::ScalarFirst,
             "xyzw" => QuaternionOrder::ScalarLast,
             _ => return Err(one_of("order", order, "'wxyz' or 'xyzw'")),
-        });
+        };
+        // columns that are named w, x, y and z are read by their names, and scipy's rotations are scalar last
+        claims.quaternion = claims.quaternion.or(Some(found));
     }
     if let Some(direction) = direction {
         claims.attitude = Some(match direction {
@@ -185,6 +207,9 @@ pub(crate) fn verdict_on(
     }
     if let Some(unit) = angle_unit {
         let found = AngleUnit::named(unit).ok_or_else(|| one_of("angle_unit", unit, "'rad' or 'deg'"))?;
+        if let Some(named) = claims.angle_unit.filter(|named| *named != found) {
+            return Err(refused(format!("angle_unit: '{unit}'; the header says {named}; drop one of the two")));
+        }
         claims.angle_unit = Some(found);
     }
     if let Some(text) = euler {
@@ -193,7 +218,20 @@ pub(crate) fn verdict_on(
             Some((sequence, "extrinsic")) => (sequence, Turns::Extrinsic),
             Some(_) => return Err(one_of("euler", text, "a sequence, as 'zyx' or 'zyx:extrinsic'")),
         };
-        let sequence = sequence.parse().map_err(of("euler"))?;
+        let sequence: EulerSequence = sequence.parse().map_err(of("euler"))?;
+        if claims.angle_axes.is_some() {
+            let axes = sequence.axes();
+            if axes[0] == axes[2] {
+                return Err(refused(format!(
+                    "euler: '{text}'; it turns about one axis twice, and roll, pitch and yaw are angles about x, y and z; state a sequence \
+                     of the three, as zyx, or name the columns by columns of read"
+                )));
+            }
+            if let Some(Attitudes::Angles(angles)) = &mut record.rows.attitude {
+                angles.iter_mut().for_each(|row| *row = axes.map(|axis| row[axis]));
+            }
+            claims.angle_axes = Some(axes);
+        }
         claims.angles =
             Some(Angles { sequence, turns, unit: claims.angle_unit.unwrap_or(AngleUnit::Radians) });
     }
@@ -274,7 +312,13 @@ impl Given {
                     "attitude, omega, momentum, form: the trajectory has its own; leave them out",
                 ));
             }
-            let Trajectory { file, id, rows, claims, counts_steps, remark, .. } = read.get();
+            let Trajectory { file, id, rows, claims, counts_steps, remark, second_attitude, .. } = read.get();
+            if !second_attitude.is_empty() {
+                return Err(refused(format!(
+                    "{file}: the columns {} hold another attitude, which is not read; name those of one body by columns of read",
+                    second_attitude.join(", ")
+                )));
+            }
             let (name, id, rows) = (file.clone(), id.clone(), rows.clone());
             return Ok(Given {
                 name,

@@ -181,7 +181,7 @@ pub(crate) fn read<'py>(
         Kind::Trajectory => {
             let options = table()?;
             let found = heard(py, || rows.trajectory(&options))?;
-            trajectories(py, &rows, found)
+            trajectories(py, &rows, &options, found)
         }
         Kind::Times => {
             let source = TimesColumn {
@@ -203,7 +203,7 @@ pub(crate) fn read<'py>(
             match found {
                 (Ok(found), remarks) if is_trajectory(&found) => {
                     remarks.iter().try_for_each(|remark| warn(py, remark))?;
-                    trajectories(py, &rows, found)
+                    trajectories(py, &rows, &options, found)
                 }
                 _ => record_of(py, &rows, &options),
             }

@@ -52,6 +52,8 @@ pub(crate) struct Trajectory {
     pub(crate) counts_steps: bool,
     /// Of the file, with its first body.
     pub(crate) remark: Option<String>,
+    /// Columns of another attitude, where none are named.
+    pub(crate) second_attitude: Vec<String>,
     comments: Vec<String>,
 }
 
@@ -193,17 +195,27 @@ pub(crate) fn record_of<'py>(
 pub(crate) fn trajectories<'py>(
     py: Python<'py>,
     rows: &Rows,
+    options: &ReadOptions,
     found: trajectory::FoundTrajectory,
 ) -> PyResult<Bound<'py, PyAny>> {
     let mut remark = found.remark();
-    let trajectory::FoundTrajectory { bodies, claims, counts_steps, comments, .. } = found;
+    let trajectory::FoundTrajectory { bodies, claims, counts_steps, comments, second_attitude, .. } = found;
+    let second_attitude = if options.columns.name_quantities() { Vec::new() } else { second_attitude };
     let file = rows.name();
-    let one = |(id, rows)| {
-        let comments = comments.clone();
-        let remark = remark.take();
-        Bound::new(py, Trajectory { file: file.clone(), id, rows, claims, counts_steps, remark, comments })
-    };
     let several = bodies.len() > 1;
+    let one = |(id, rows): (Option<String>, audit::Trajectory)| {
+        let trajectory = Trajectory {
+            file: file.clone(),
+            id: id.filter(|_| several),
+            rows,
+            claims,
+            counts_steps,
+            remark: remark.take(),
+            second_attitude: second_attitude.clone(),
+            comments: comments.clone(),
+        };
+        Bound::new(py, trajectory)
+    };
     let mut all: Vec<Bound<'py, Trajectory>> = bodies.into_iter().map(one).collect::<PyResult<_>>()?;
     match all.pop() {
         Some(only) if !several => Ok(only.into_any()),

@@ -59,6 +59,42 @@ def test_a_noisy_record_is_undecided_until_its_noise_is_declared(exact):
         polhode.audit(T, exact.attitude, exact.omega, any_order=True)
 
 
+def test_what_is_said_of_columns_that_a_record_has_not_is_refused(exact):
+    attitude, omega = exact
+    for argument, value, record in [
+        ("order", "xyzw", (T, None, omega)),
+        ("direction", "space-to-body", (T, None, omega)),
+        ("omega_frame", "body", (T, attitude)),
+        ("rate_unit", "rpm", (T, attitude)),
+        ("momentum_frame", "space", (T, attitude, omega)),
+        ("euler", "zyx", (T, attitude, omega)),
+        ("angle_unit", "deg", (T, attitude, omega)),
+    ]:
+        with pytest.raises(PolhodeError, match=f"{argument}: '{value}'; it says how .* is written, and the record has none"):
+            polhode.audit(*record, moments=[1, 2, 3], **{argument: value})
+
+
+def test_what_columns_say_by_their_names_is_heeded_as_by_the_command(exact):
+    attitude, omega = exact
+    rates = {f"omega_body_{axis}": omega[:, k] for k, axis in enumerate("xyz")}
+    last = {f"q_{axis}": attitude[:, "wxyz".index(axis)] for axis in "xyzw"}
+    assert polhode.audit(polhode.read({"t": T, **last, **rates}), moments=[1, 2, 3], order="xyzw").is_right
+    w, x, y, z = attitude.T
+    roll, pitch = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)), np.arcsin(2 * (w * y - z * x))
+    yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+    angles = polhode.read({"t": T, "roll": roll, "pitch": pitch, "yaw": yaw, **rates})
+    assert polhode.audit(angles, moments=[1, 2, 3], euler="zyx").is_right
+    degrees = {f"{name} (deg)": np.degrees(angle) for name, angle in [("roll", roll), ("pitch", pitch), ("yaw", yaw)]}
+    second = {f"box2_q{axis}": attitude[:, k] for k, axis in enumerate("wxyz")}
+    for record, says, words in [
+        (angles, {"euler": "zxz"}, "euler: 'zxz'; it turns about one axis twice"),
+        (polhode.read({"t": T, **degrees, **rates}), {"angle_unit": "rad"}, "angle_unit: 'rad'; the header says deg"),
+        (polhode.read({"t": T, **last, **rates, **second}), {}, "columns box2_qw, box2_qx, box2_qy, box2_qz hold another attitude"),
+    ]:
+        with pytest.raises(PolhodeError, match=words):
+            polhode.audit(record, moments=[1, 2, 3], **says)
+
+
 def test_a_wrong_integrator_is_named_with_what_to_switch_to():
     verdict = polhode.audit(polhode.read(PROGRAMS / "mujoco-euler.csv"), moments=[1, 2, 2.5])
     assert (verdict.verdict, verdict.suspect) == ("wrong", "integrator:semi-implicit-euler")
