@@ -104,9 +104,9 @@ impl Verdict {
 /// `"space-to-body"`), `omega_frame` and `momentum_frame` (`"body"`, `"space"`), `rate_unit`, `euler` (as `"zyx"`, or
 /// `"zyx:extrinsic"`; columns roll, pitch and yaw are taken by the letters) and `angle_unit`, and the rows contradict, makes the record
 /// wrong; said of columns that the record has not, it is refused. Columns that name their scalar are read by their names, whatever `order`
-/// says. `any_order`: the moments may belong to the axes in any order. `tolerance`: largest error of a record that is right, rad and relative; `noise`: standard deviations that the record
-/// has, rad, or a pair of rad and rad/s, each 0 where the record has no such columns. `advice`: whether a record that is wrong by its
-/// integrator gets a method that would do, which takes two seconds at most.
+/// says. `any_order`: the moments may belong to the axes in any order. `tolerance`: largest error of a record that is right, rad and
+/// relative; `noise`: standard deviations that the record has, rad, or a pair of rad and rad/s, each 0 where the record has no such
+/// columns. `advice`: whether a record that is wrong by its integrator gets a method that would do, which takes two seconds at most.
 ///
 /// >>> import numpy, polhode
 /// >>> t = numpy.arange(400) * 0.05
@@ -208,7 +208,9 @@ pub(crate) fn verdict_on(
     if let Some(unit) = angle_unit {
         let found = AngleUnit::named(unit).ok_or_else(|| one_of("angle_unit", unit, "'rad' or 'deg'"))?;
         if let Some(named) = claims.angle_unit.filter(|named| *named != found) {
-            return Err(refused(format!("angle_unit: '{unit}'; the header says {named}; drop one of the two")));
+            return Err(refused(format!(
+                "angle_unit: '{unit}'; the header says {named}; drop one of the two"
+            )));
         }
         claims.angle_unit = Some(found);
     }

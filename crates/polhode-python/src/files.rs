@@ -80,9 +80,10 @@ impl Kind {
 /// | `kind="times"` | array of times, s |
 ///
 /// Of tables: `columns` names columns as `"t=clock,wx=gx,wy=gy,wz=gz"`; `time_unit` (`s`, `ms`, `us`, `ns`, or seconds) and `rate_unit`
-/// (`rad/s`, `deg/s`, `rpm`) hold where the header names none; `sample_rate`, Hz, where a column counts samples; `axes` as `"x,-y,z"` and
-/// `skip_rows`, the share of rows of a record that may be left out. Of meshes: `length_unit` (`mm`, `m`, ...), `close` (`fan`, `hull`),
-/// `shell` (thickness of walls, m), `weld`, `group`. Of MJCF: `root`, the folder of its includes.
+/// (`rad/s`, `deg/s`, `rpm`) hold where the header names none; `sample_rate`, Hz, where a column counts samples. Of records: `axes` as
+/// `"x,-y,z"` and `skip_rows`, the share of rows that may be left out. Of meshes: `length_unit` (`mm`, `m`, ...), `close` (`fan`, `hull`),
+/// or `shell` (thickness of walls, m), `weld`, `group`. Of MJCF: `root`, the folder of its includes. What is given of another kind is
+/// refused.
 ///
 /// >>> import os, polhode, tempfile
 /// >>> path = os.path.join(tempfile.mkdtemp(), "record.csv")
@@ -129,10 +130,39 @@ pub(crate) fn read<'py>(
         Rows::Text(_) if matches!(kind, Kind::Trajectory | Kind::Record | Kind::Table) => PathBuf::new(),
         Rows::Text(_) => return Err(refused("kind: columns in memory are a trajectory or a record")),
     };
-    let about_meshes =
-        [mass.is_some(), density.is_some(), length_unit.is_some(), close.is_some(), shell.is_some()];
+    let about_meshes = [
+        mass.is_some(),
+        density.is_some(),
+        length_unit.is_some(),
+        close.is_some(),
+        shell.is_some(),
+        weld.is_some(),
+        group.is_some(),
+    ];
     if kind != Kind::Mesh && about_meshes.contains(&true) {
-        return Err(refused("mass, density, length_unit, close, shell: they are for meshes; leave them out"));
+        return Err(refused(
+            "mass, density, length_unit, close, shell, weld, group: they are for meshes; leave them out",
+        ));
+    }
+    if close.is_some() && shell.is_some() {
+        return Err(refused("close, shell: walls need no closed surface; give one of the two"));
+    }
+    if root.is_some() && !matches!(kind, Kind::Model(_)) {
+        return Err(refused("root: it is the folder of the includes of a model; leave it out"));
+    }
+    let is_table = matches!(kind, Kind::Trajectory | Kind::Record | Kind::Table);
+    let about_tables = [
+        columns.is_some() && kind != Kind::Times,
+        time_unit.is_some(),
+        rate_unit.is_some(),
+        sample_rate.is_some(),
+        axes.is_some(),
+        skip_rows.is_some(),
+    ];
+    if !is_table && about_tables.contains(&true) {
+        return Err(refused(
+            "columns, time_unit, rate_unit, sample_rate, axes, skip_rows: they are for trajectories and records; leave them out",
+        ));
     }
     let table = || -> PyResult<ReadOptions> {
         Ok(ReadOptions::default()

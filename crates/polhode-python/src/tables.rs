@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::array;
-use crate::error::warn;
+use crate::error::{refused, warn};
 use crate::files::heard;
 use crate::parts;
 
@@ -178,12 +178,26 @@ impl Record {
     }
 }
 
+/// Refuses a unit of times that have theirs.
+fn check_times(options: &ReadOptions, read_as: &ReadAs) -> PyResult<()> {
+    let (times, _) = &read_as.times;
+    let is_set = options.time_unit.is_some() || options.sample_rate.is_some();
+    if is_set && (times == "dates" || times == "s and ns") {
+        return Err(refused(format!(
+            "time_unit, sample_rate: the times of {} are {times} already; leave them out",
+            read_as.file
+        )));
+    }
+    Ok(())
+}
+
 pub(crate) fn record_of<'py>(
     py: Python<'py>,
     rows: &Rows,
     options: &ReadOptions,
 ) -> PyResult<Bound<'py, PyAny>> {
     let found = heard(py, || rows.record(options))?;
+    check_times(options, &found.read_as)?;
     if let Some(first) = found.skipped.first() {
         let (count, samples) = (found.skipped.len(), found.record.samples());
         warn(py, &format!("rows left out: {count}, beside {samples} that are read; the first: {first}"))?;
@@ -198,6 +212,18 @@ pub(crate) fn trajectories<'py>(
     options: &ReadOptions,
     found: trajectory::FoundTrajectory,
 ) -> PyResult<Bound<'py, PyAny>> {
+    check_times(options, &found.read_as)?;
+    if options.axes.is_some() || options.most_skipped.is_some() {
+        return Err(refused(
+            "axes, skip_rows: they are for records, and this is a trajectory; leave them out, or give kind=\"record\"",
+        ));
+    }
+    let has_rates = found.bodies.iter().any(|(_, rows)| rows.rates.is_some());
+    if let Some(unit) = options.rate_unit.filter(|_| !has_rates) {
+        return Err(refused(format!(
+            "rate_unit: '{unit}'; it says how an angular velocity is written, and none is read; leave it out"
+        )));
+    }
     let mut remark = found.remark();
     let trajectory::FoundTrajectory { bodies, claims, counts_steps, comments, second_attitude, .. } = found;
     let second_attitude = if options.columns.name_quantities() { Vec::new() } else { second_attitude };

@@ -310,12 +310,22 @@ def test_every_kind_of_file_is_read(tmp_path):
     assert_allclose(solid.center_of_mass, [0.25, 0.25, 0.25])
     (tmp_path / "times.txt").write_text("0\n1.5\n3\n")
     assert polhode.read(tmp_path / "times.txt", kind="times").tolist() == [0, 1.5, 3]
+    (tmp_path / "dates.csv").write_text("time,wx,wy,wz\n2026-01-01T00:00:00Z,0.4,1,-0.3\n2026-01-01T00:00:01Z,0.41,0.99,-0.28\n")
     for call, words in [
         (lambda: polhode.read(tmp_path / "missing.csv"), "missing.csv"),
         (lambda: polhode.read(tmp_path / "log.csv", kind="film"), "kind: 'film'"),
         (lambda: polhode.read(tmp_path / "log.csv", density=1), "they are for meshes"),
         (lambda: polhode.read(tmp_path / "tetrahedron.obj"), "give mass"),
         (lambda: polhode.read("-"), "-"),
+        # what would be of no use
+        (lambda: polhode.read(tmp_path / "log.csv", weld=1e-6), "they are for meshes"),
+        (lambda: polhode.read(tmp_path / "log.csv", root=tmp_path), "root: it is the folder of the includes"),
+        (lambda: polhode.read(tmp_path / "tetrahedron.obj", density=6, shell=0.01, close="fan"), "close, shell: .*give one of the two"),
+        (lambda: polhode.read(tmp_path / "tetrahedron.obj", density=6, columns="t=1"), "they are for trajectories and records"),
+        (lambda: polhode.read(tmp_path / "times.txt", kind="times", time_unit="ms"), "they are for trajectories and records"),
+        (lambda: polhode.read(PROGRAMS / "numpy.npy", columns=columns, axes="x,-y,z"), "they are for records"),
+        (lambda: polhode.read({"t": [0, 1], **{f"q_{axis}": [0.5, 0.5] for axis in "wxyz"}}, rate_unit="rpm"), "rate_unit: 'rpm'"),
+        (lambda: polhode.read(tmp_path / "dates.csv", time_unit="ms"), "dates.csv are dates already"),
     ]:
         with pytest.raises(PolhodeError, match=words):
             call()
