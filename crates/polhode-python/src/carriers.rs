@@ -228,6 +228,19 @@ pub(crate) fn fitted_carrier(
         }
         (known, _) => known.map(|body| Known::of(body, carrier_mass)).transpose()?,
     };
+    if placed.is_some() && object.is_none() && object_proof.is_none() {
+        return Err(refused(
+            "object_at: no record has the object on the carrier; give object or object_proof",
+        ));
+    }
+    if let (Some(sigma), None) = (proof_sigma, &known) {
+        return Err(refused(format!("proof_sigma: {sigma:?}; it is of proof_body, and none is given")));
+    }
+    if let (Some(mass), None, None | Some(Known::Adding(_))) = (carrier_mass, placed, &known) {
+        return Err(refused(format!(
+            "carrier_mass: {mass:?}; it goes with the mass properties of a proof body, or with object_at, and neither is given"
+        )));
+    }
     let body = |found: Result<ProofBody, CarrierError>| {
         found.map(|body| body.with_deviation(proof_sigma)).map_err(of("proof_body"))
     };

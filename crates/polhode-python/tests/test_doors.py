@@ -123,6 +123,9 @@ def test_a_carrier_a_proof_body_and_an_object(command):
         (dict(object=item, object_mass=2), "give all three"),
         (dict(object=(item.t,)), "object: a tuple of 1"),
         (dict(object_proof=both, proof_body=known, carrier_mass=6), "object_mass, object_at: missing"),
+        (dict(object_mass=2, object_at=[-0.04, 0.04, 0.02], carrier_mass=6), "object_at: no record has the object"),
+        (dict(object=item, proof_sigma=0.01), "proof_sigma: 0.01; it is of proof_body"),
+        (dict(proof=proof, proof_body=[1, 2, 2.5], carrier_mass=6), "carrier_mass: 6.0; it goes with"),
     ]:
         with pytest.raises(polhode.PolhodeError, match=words):
             polhode.fit_carrier(carrier, **wrong)
