@@ -36,7 +36,7 @@ use crate::wheels::Wheel;
 #[derive(Clone)]
 pub(crate) struct Body {
     pub(crate) body: body::Body,
-    named: Option<Box<catalogue::NamedBody>>,
+    pub(crate) named: Option<Box<catalogue::NamedBody>>,
     /// Of a mesh, why nothing may act on it under which its size counts.
     sizeless: Option<String>,
     raised: Vec<Raised>,

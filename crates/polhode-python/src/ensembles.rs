@@ -20,7 +20,8 @@ use crate::states::States;
 /// Bodies with their starts, propagated together on all cores. Members do not act on each other.
 ///
 /// `body` is one for all, as `Body` takes it, with its forces; or `moments` (n, 3) or `tensors` (n, 3, 3) are those of each member.
-/// `omega`, rad/s, or `momentum`, kg m^2/s, body axes: (n, 3), or (3,) for all; `attitude`: (n, 4), or (4,) for all, or a scipy rotation.
+/// `omega`, rad/s, or `momentum`, kg m^2/s, body axes: (n, 3), or (3,) for all; `attitude`: (n, 4), or (4,) for all, or a scipy rotation;
+/// without one that of the published motion of a body of the catalogue, else the identity.
 ///
 /// >>> import numpy, polhode
 /// >>> omega = [0.4, 1, -0.3] + numpy.random.default_rng(1).normal(0, 0.01, (1000, 3))
@@ -80,7 +81,10 @@ impl Ensemble {
         };
         let rotations = one_or_rows::<3>(rotations)?;
         let (attitudes, written) = match attitude {
-            None => (vec![[1.0, 0.0, 0.0, 0.0]], Order::First),
+            None => {
+                let known = body.as_ref().and_then(|body| body.named.as_deref());
+                (vec![known.map_or([1.0, 0.0, 0.0, 0.0], |known| known.attitude)], Order::First)
+            }
             Some(attitude) => {
                 let (numbers, order) = quaternions(attitude, order)?;
                 (one_or_rows::<4>(numbers)?, order)

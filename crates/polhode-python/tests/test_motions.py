@@ -185,6 +185,12 @@ def test_members_of_an_ensemble_have_the_bits_of_one_body():
     assert_array_equal(heavy.omega[0, 1], LagrangeTop(top, [0, 0, 21], [0.97, 0.24, 0, 0]).at(3).omega)
 
 
+def test_members_of_a_body_of_the_catalogue_start_at_its_attitude():
+    body = polhode.body("toutatis")
+    started = Ensemble("toutatis", [body.omega, body.omega]).at([0]).attitude
+    assert abs(body.attitude[0]) < 0.999 and (abs(started[0] @ body.attitude) > 1 - 1e-12).all()
+
+
 def test_members_are_named_where_they_are_refused():
     with pytest.raises(PolhodeError, match="moments: member 1: principal moments 1, 2, 4 violate"):
         Ensemble(moments=[[1, 2, 3], [1, 2, 4]], omega=OMEGA)
