@@ -7,7 +7,8 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, Order, array, quaternions, room, unit};
 use crate::bodies::Body;
-use crate::calm::aside;
+use crate::calm::{Listener, aside};
+use crate::derivatives::at_each;
 use crate::error::{of, refused};
 use crate::motions::FreeMotion;
 use crate::states::States;
@@ -133,7 +134,9 @@ impl Interpolation {
         let (mut attitudes, mut omegas) = (room::<[f64; 4]>(times.len())?, room::<[f64; 3]>(times.len())?);
         let body = polhode::Body::free(self.inertia.clone());
         t.py().detach(|| {
+            let mut listener = Listener::new();
             times.iter().try_for_each(|&t| {
+                listener.listen(0.0)?;
                 let (state, _) = self.found.at(t).map_err(of("t"))?;
                 attitudes.push(order.write(state.attitude));
                 omegas.push(body.omega_body(&state).into());
@@ -145,9 +148,8 @@ impl Interpolation {
 
     /// Angle between the attitude and that of `slerp` between the two neighbours of the table, rad, at the time `t`.
     fn beside_slerp<'py>(&self, t: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
-        let Numbers { shape, values, .. } = Numbers::of("t", t)?;
-        let angles = values.iter().map(|&t| self.found.at(t).map(|(_, angle)| angle));
-        array(t.py(), angles.collect::<Result<Vec<_>, _>>().map_err(of("t"))?, &shape)
+        let (shape, angles) = at_each(t, |t| self.found.at(t).map(|(_, angle)| angle).map_err(of("t")))?;
+        array(t.py(), angles, &shape)
     }
 
     /// First and last time, s.
