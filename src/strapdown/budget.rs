@@ -106,6 +106,9 @@ impl Estimate {
 
     /// Deviations that one estimate in ten thousand exceeds by chance: the root of that quantile of χ² of three degrees of freedom.
     pub const CONTRADICTION: f64 = 4.594;
+
+    /// An attitude with a larger standard deviation is lost, rad.
+    pub const LOST: f64 = 1.0;
 }
 
 /// χ² of three degrees of freedom that 95 % stay below.

@@ -30,8 +30,9 @@ pub(crate) struct Attitudes {
 /// since the one before) or `increment` (rad since the one before). `start` is the attitude at the first time, which counts as exact.
 /// `rule` is `auto` (order and samples chosen with the noise), `magnus:ORDER`, `magnus:ORDER,SAMPLES`, or what others run: `hold`,
 /// `trapezoid`, `two-speed`, `runge-kutta`. Standard deviations of the sensor: `noise` of a reading (found in the record where it
-/// is not given), `bias`, rad/s, `scale_error`, a ratio, `stamps`, s. With a free `body` the attitudes are those of its exact motion that fits
-/// all rates best; a warning says where they contradict those of the readings alone.
+/// is not given), `bias`, rad/s, `scale_error`, a ratio, `stamps`, s, of which noise that is found is a part. With a free `body` the
+/// attitudes are those of its exact motion that fits all rates best; a warning says where they contradict those of the readings alone.
+/// Other warnings are of samples that stand far out of their neighbours, which the command leaves out, and of attitudes that are lost.
 ///
 /// >>> import numpy, polhode
 /// >>> t = numpy.arange(2000) * 0.05
@@ -71,6 +72,13 @@ pub(crate) fn attitude(
         return Err(refused(format!("body: a flight is fitted to rates, and the readings are {kind}s")));
     }
     let found = aside(t.py(), move |_| {
+        // noise that is found in the record holds that of the stamps
+        let stamps = if noise.is_none() && stamps.is_finite() { stamps.min(0.0) } else { stamps };
+        // rates that stand far out of their neighbours
+        let spikes = match record::Record::from_samples(&times, &rates) {
+            Ok(record) if kind == Kind::Rate => record.without_spikes().map(|(spikes, _)| spikes),
+            _ => None,
+        };
         let noise = noise.unwrap_or_else(|| {
             // steps of digital readings count as noise
             let rounding = record::Record::from_samples(&times, &rates)
@@ -87,16 +95,35 @@ pub(crate) fn attitude(
         };
         let integrated =
             strapdown::attitudes(&times, &rates, kind, rule, start, sensor).map_err(|error| text(&error))?;
-        let Some(inertia) = inertia else { return Ok((integrated, rule.to_string(), noise, None)) };
+        let Some(inertia) = inertia else { return Ok((integrated, rule.to_string(), noise, None, spikes)) };
         let flight = Flight::fit(&inertia, &times, &rates, start, sensor).map_err(|error| text(&error))?;
         let estimates = flight.at(&times).map_err(|error| text(&error))?;
         let pairs = estimates.iter().zip(&integrated);
         let apart = pairs
             .map(|(one, other)| (one.deviations_from(other), one.time))
             .max_by(|a, b| a.0.total_cmp(&b.0));
-        Ok::<_, String>((estimates, "exact motion".to_string(), noise, apart))
+        Ok::<_, String>((estimates, "exact motion".to_string(), noise, apart, spikes))
     })?;
-    let (estimates, rule, noise, apart) = found.map_err(of("rates"))?;
+    let (estimates, rule, noise, apart, spikes) = found.map_err(of("rates"))?;
+    if let Some([first, others @ ..]) = spikes.as_deref() {
+        let (count, time) = (1 + others.len(), first.time);
+        let samples =
+            if count == 1 { "1 sample stands".to_string() } else { format!("{count} samples stand") };
+        warn(
+            t.py(),
+            &format!(
+                "{samples} far out of the neighbours, the first at t = {time} s, and sigma does not contain what that does to the attitude; \
+                 the command leaves such samples out"
+            ),
+        )?;
+    }
+    if let Some(first) = estimates.iter().find(|estimate| estimate.budget.sigma() > Estimate::LOST) {
+        let (time, most) = (first.time, Estimate::LOST);
+        warn(
+            t.py(),
+            &format!("the attitude is lost: from t = {time} s on its standard deviation is above {most} rad"),
+        )?;
+    }
     if let Some((deviations, time)) = apart.filter(|(deviations, _)| *deviations > Estimate::CONTRADICTION) {
         warn(
             t.py(),

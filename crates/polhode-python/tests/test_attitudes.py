@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import polhode
-from polhode import FreeMotion, PolhodeError
+from polhode import FreeMotion, PolhodeError, PolhodeWarning
 
 T = np.arange(2000) * 0.05
 EXACT, RATES = FreeMotion([1, 2, 3], [0.4, 1, -0.3]).at(T)
@@ -26,6 +26,18 @@ def test_errors_are_those_of_the_budget():
     smooth = polhode.attitude(T, noisy, kind="rate", body=[1, 2, 3])
     assert smooth.rule == "exact motion" and smooth.sigma[-1] < found.sigma[-1] and (smooth.truncation == 0).all()
     assert "magnus:" in repr(found) and found._repr_html_().count("<svg") == 1
+
+
+def test_what_an_attitude_is_not_worth_is_said():
+    spike = RATES + np.random.default_rng(1).normal(0, 1e-3, RATES.shape)
+    # stamps are part of noise that is found
+    assert (polhode.attitude(T, spike, kind="rate", stamps=0.01).budget["stamps"] == 0).all()
+    assert polhode.attitude(T, spike, kind="rate", stamps=0.01, noise=1e-3).budget["stamps"][-1] > 0
+    spike[1000] += 1
+    with pytest.warns(PolhodeWarning, match="1 sample stands far out of the neighbours, the first at t = 50"):
+        polhode.attitude(T, spike, kind="rate")
+    with pytest.warns(PolhodeWarning, match="the attitude is lost: from t = .* s on its standard deviation is above 1 rad"):
+        polhode.attitude(T, RATES, kind="rate", noise=0, bias=10.0)
 
 
 def test_orders_of_rules_and_of_quaternions():
@@ -54,6 +66,7 @@ def test_orders_of_rules_and_of_quaternions():
         (lambda: polhode.attitude(T, RATES * np.nan, kind="rate", noise=0), "rates: sample 0"),
         (lambda: polhode.attitude(T, RATES * 100, kind="rate"), "more than half a turn"),
         (lambda: polhode.attitude(T, RATES, kind="rate", bias=-1.0), "the bias of the sensor is -1"),
+        (lambda: polhode.attitude(T, RATES, kind="rate", stamps=-1.0), "the error of the stamps of the sensor is -1"),
         (lambda: polhode.attitude(T, RATES, kind="rate", start=[0, 0, 0, 0]), "start: .* is no rotation"),
         (lambda: polhode.attitude(T, RATES, kind="rate", body=[1, 1, 1.9]), "the body contradicts the record"),
         (lambda: polhode.attitude(T, RATES, kind="increment", body=[1, 2, 3]), "a flight is fitted to rates"),

@@ -14,6 +14,7 @@ use clap::{Args, ValueEnum};
 use nalgebra::UnitQuaternion;
 use polhode::record::{Record, Segment};
 use polhode::rotation::EulerSequence;
+use polhode::strapdown::Estimate;
 use polhode_files::error::Error;
 use polhode_files::numbers::{quaternion, turn};
 use polhode_files::record::Part;
@@ -95,9 +96,6 @@ enum Direction {
     SpaceToBody,
 }
 
-/// An attitude with a larger standard deviation is lost, rad.
-const LOST: f64 = 1.0;
-
 impl Attitude {
     pub(crate) fn run(&self) -> Result<(), Error> {
         if self.body.is_some() {
@@ -142,9 +140,10 @@ impl Attitude {
         match lost {
             None => Ok(()),
             Some(t) => Err(Error::Failed(format!(
-                "{}: the attitude is lost: from t = {} s on its standard deviation is above {LOST} rad",
+                "{}: the attitude is lost: from t = {} s on its standard deviation is above {} rad",
                 readings.name(),
-                rounded(t)
+                rounded(t),
+                Estimate::LOST
             ))),
         }
     }
@@ -183,7 +182,7 @@ impl Attitude {
     ) -> Result<(), Error> {
         for Found { integrated, smoothed } in found.drain(..) {
             let estimate = smoothed.unwrap_or(integrated);
-            if estimate.budget.sigma() > LOST {
+            if estimate.budget.sigma() > Estimate::LOST {
                 lost.get_or_insert(estimate.time);
             }
             let error = reference.as_mut().map(|reference| reference.error(&estimate));
