@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use polhode::advise::{Advice as Found, Choice, Demand, Progress, Setting, advise_telling, check_telling};
+use polhode::method::method;
 use polhode_pages::table::{Column, Table, row};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -10,7 +11,7 @@ use pyo3::types::PyDict;
 use crate::arrays::Order;
 use crate::bodies::{Body, Start};
 use crate::calm::aside;
-use crate::error::{refused, warn};
+use crate::error::{of, refused, warn};
 
 /// The quickest method that meets a demand, and the others that do.
 #[pyclass(frozen, module = "polhode")]
@@ -144,7 +145,7 @@ impl Advice {
 ///
 /// The start is that of `FreeMotion`. `energy_error`: largest relative error of the energy; `budget`: largest processor time, s;
 /// `exclude`: names of methods that are not wanted; `check`: whether the advice is run to the end and its attitude compared with
-/// the motion; the energy error stays the predicted one.
+/// the motion, with a warning where that is more than was asked for; the energy error stays the predicted one.
 /// `progress` is called as `progress(stage, done, seconds)`: what is done, which part of it, and about how long all of it takes.
 ///
 /// >>> import polhode
@@ -178,6 +179,10 @@ pub(crate) fn advise(
     let mut demand = Demand::new(until, attitude_error);
     (demand.energy_error, demand.budget, demand.start_time) = (energy_error, budget, start_time);
     demand.excluded = exclude.unwrap_or_default();
+    let groups = ["exact", "dmv", "gauss"];
+    for name in demand.excluded.iter().filter(|name| !groups.contains(&name.as_str())) {
+        method(name).map_err(of("exclude"))?;
+    }
     let raised = Arc::new(Mutex::new(None));
     let keeper = Arc::clone(&raised);
     let moved = body.body.clone();
@@ -216,6 +221,15 @@ pub(crate) fn advise(
             warn(py, "the energy error was not seen but extrapolated; check=True is of the attitude alone")?;
         }
         _ => {}
+    }
+    if let Some(error) = actual_error.filter(|error| *error > attitude_error) {
+        let method = &found.best.method;
+        warn(
+            py,
+            &format!(
+                "the attitude error of {method} is {error:.1e} rad, and {attitude_error:.1e} rad were asked for"
+            ),
+        )?;
     }
     Ok(Advice { found, actual_error })
 }

@@ -215,6 +215,8 @@ def test_advice_names_a_method_that_does():
     assert advice.to_dict()["method"] == advice.method and advice.method in repr(advice)
     with pytest.raises(PolhodeError, match="at rest"):
         polhode.advise([1, 2, 3], [0, 0, 0], until=1, attitude_error=1e-6)
+    with pytest.raises(PolhodeError, match='exclude: there is no method "rk5"'):
+        polhode.advise([1, 2, 3], OMEGA, until=1, attitude_error=1e-6, exclude=["exact", "dmv", "rk5"])
     with pytest.raises(ZeroDivisionError):
         polhode.advise([1, 2, 3], OMEGA, until=1e4, attitude_error=1e-6, exclude=["exact"], progress=lambda *now: 1 / 0)
 
