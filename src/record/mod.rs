@@ -275,6 +275,15 @@ impl Record {
         cut
     }
 
+    /// Whether it has the times and rates of every segment of `other`, if that has any.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn holds(&self, other: &Record) -> bool {
+        let is_same = |a: &Segment, b: &Segment| a.times == b.times && a.rates == b.rates;
+        !other.segments.is_empty()
+            && other.segments.iter().all(|own| self.segments.iter().any(|of| is_same(own, of)))
+    }
+
     /// This record and another of the same body.
     #[must_use]
     pub fn join(mut self, other: Record) -> Record {

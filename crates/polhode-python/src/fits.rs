@@ -272,9 +272,24 @@ pub(crate) fn recorded(
         let records: Vec<Record> = t
             .extract()
             .map_err(|_| refused("rates: missing; give times and rates, a Record, or a list of records"))?;
-        let files = records.iter().flat_map(|record| record.read_as.clone()).collect();
-        let joined = records.into_iter().map(|of| of.record).reduce(record::Record::join);
-        return joined.map(|record| (record, files)).ok_or_else(|| refused("t: a list without records"));
+        if records.is_empty() {
+            return Err(refused("t: a list without records"));
+        }
+        let (mut all, mut files) = (record::Record::default(), Vec::new());
+        for (k, Record { record, read_as }) in records.into_iter().enumerate() {
+            if all.holds(&record) {
+                warn(
+                    t.py(),
+                    &format!(
+                        "record {k} of the list: times and rates are those of records before it; readings that count twice make the \
+                         standard deviations too small"
+                    ),
+                )?;
+            }
+            all = all.join(record);
+            files.extend(read_as);
+        }
+        return Ok((all, files));
     }
     let times = Numbers::of("t", t)?.list()?;
     let n = Some(times.len());

@@ -190,6 +190,14 @@ def test_warnings_of_a_fit_are_python_warnings():
     assert any("stand" in text for text in estimate.warnings)
 
 
+def test_readings_that_count_twice_are_said_to_do_so():
+    t, rates = simulated()
+    record = polhode.read({"t": t, **{f"w{axis}": rates[:, k] for k, axis in enumerate("xyz")}})
+    with pytest.warns(PolhodeWarning, match="record 1 of the list: times and rates are those of records before it"):
+        twice = polhode.fit([record, record])
+    assert twice.segments == 2 and (twice.sigma_ratios < polhode.fit(record).sigma_ratios).all()
+
+
 def test_what_a_record_does_not_tell_is_refused():
     t = np.arange(4000) * 0.01
     spin = np.tile([0, 0, 1.0], (4000, 1)) + np.random.default_rng(1).normal(0, 0.01, (4000, 3))

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use nalgebra::Vector3;
-use polhode::record::{Record, Segment};
+use polhode::record::Record;
 use polhode::units::RateUnit;
 use polhode_files::error::{Error, TableError, warn};
 use polhode_files::numbers::{number, numbers};
@@ -118,7 +118,7 @@ impl RecordArguments {
         for (k, (of, path)) in each.enumerate() {
             let found = self.read(path, wheel)?;
             let record = self.cut(found.record, k)?;
-            if all.iter().any(|before| holds(before, &record)) {
+            if all.iter().any(|before| before.holds(&record)) {
                 warn(&format!(
                     "{}: times and rates are those of a file before it; readings that count twice make the standard deviations too small",
                     found.read_as.file
@@ -187,13 +187,6 @@ impl RecordArguments {
         found.remarks.iter().for_each(|remark| warn(remark));
         Ok(found)
     }
-}
-
-/// Whether `all` has every segment of `record`.
-fn holds(all: &Record, record: &Record) -> bool {
-    let is_same = |a: &Segment, b: &Segment| a.times() == b.times() && a.rates() == b.rates();
-    !record.segments.is_empty()
-        && record.segments.iter().all(|own| all.segments.iter().any(|other| is_same(own, other)))
 }
 
 /// A refusal of a row, with the flag that allows for more such rows.
