@@ -164,17 +164,21 @@ impl Order {
 }
 
 /// Quaternions as written, and their order: those of a `scipy` rotation are scalar last, whatever is said.
-pub(crate) fn quaternions(value: &Bound<'_, PyAny>, order: Order) -> PyResult<(Numbers, Order)> {
+pub(crate) fn quaternions(
+    name: &'static str,
+    value: &Bound<'_, PyAny>,
+    order: Order,
+) -> PyResult<(Numbers, Order)> {
     if value.hasattr("as_quat")? {
-        return Ok((Numbers::of("attitude", &value.call_method0("as_quat")?)?, Order::Last));
+        return Ok((Numbers::of(name, &value.call_method0("as_quat")?)?, Order::Last));
     }
-    Ok((Numbers::of("attitude", value)?, order))
+    Ok((Numbers::of(name, value)?, order))
 }
 
 /// An attitude: a quaternion of any norm but zero, or a `scipy` rotation; the identity where none is given.
 pub(crate) fn attitude(value: Option<&Bound<'_, PyAny>>, order: Order) -> PyResult<Quat<f64>> {
     let Some(value) = value else { return Ok(Quat::identity()) };
-    let (numbers, order) = quaternions(value, order)?;
+    let (numbers, order) = quaternions("attitude", value, order)?;
     Ok(order.read(numbers.fixed()?))
 }
 
@@ -184,7 +188,8 @@ pub(crate) fn rotation(
     value: &Bound<'_, PyAny>,
     order: Order,
 ) -> PyResult<UnitQuaternion<f64>> {
-    unit(name, attitude(Some(value), order)?)
+    let (numbers, order) = quaternions(name, value, order)?;
+    unit(name, order.read(numbers.fixed()?))
 }
 
 /// The rotation of a quaternion of any norm but zero.

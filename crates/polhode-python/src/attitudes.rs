@@ -254,7 +254,7 @@ impl Attitudes {
         &self.rule
     }
 
-    /// White noise of a reading that was given, or found in the record.
+    /// White noise of a reading that was given, or found in the record, rad/s; of increments rad.
     #[getter]
     fn noise(&self) -> f64 {
         self.noise

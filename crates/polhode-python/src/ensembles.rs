@@ -86,7 +86,7 @@ impl Ensemble {
                 (vec![known.map_or([1.0, 0.0, 0.0, 0.0], |known| known.attitude)], Order::First)
             }
             Some(attitude) => {
-                let (numbers, order) = quaternions(attitude, order)?;
+                let (numbers, order) = quaternions("attitude", attitude, order)?;
                 (one_or_rows::<4>(numbers)?, order)
             }
         };

@@ -182,7 +182,7 @@ impl Measured {
     ) -> PyResult<Self> {
         let times = Numbers::of("t", t)?.list()?;
         let n = Some(times.len());
-        let (rows, order) = quaternions(attitude, order)?;
+        let (rows, order) = quaternions("attitude", attitude, order)?;
         let mut reading = Reading::default();
         reading.attitude = Some(Direction::BodyToSpace);
         reading.quaternion = Some(match order {

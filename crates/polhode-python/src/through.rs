@@ -199,7 +199,7 @@ pub(crate) fn table(
     order: Order,
 ) -> PyResult<Vec<(f64, UnitQuaternion<f64>)>> {
     let times = Numbers::of("t", t)?.list()?;
-    let (numbers, order) = quaternions(attitude, order)?;
+    let (numbers, order) = quaternions("attitude", attitude, order)?;
     let rows = numbers.rows::<4>(Some(times.len()))?;
     let turns = rows.into_iter().map(|row| unit("attitude", order.read(row)));
     times.into_iter().zip(turns).map(|(t, turn)| Ok((t, turn?))).collect()

@@ -68,6 +68,7 @@ def test_orders_of_rules_and_of_quaternions():
         (lambda: polhode.attitude(T, RATES, kind="rate", bias=-1.0), "the bias of the sensor is -1"),
         (lambda: polhode.attitude(T, RATES, kind="rate", stamps=-1.0), "the error of the stamps of the sensor is -1"),
         (lambda: polhode.attitude(T, RATES, kind="rate", start=[0, 0, 0, 0]), "start: .* is no rotation"),
+        (lambda: polhode.attitude(T, RATES, kind="rate", start=[1, 0, 0]), r"start: an array of shape \(3,\)"),
         (lambda: polhode.attitude(T, RATES, kind="rate", body=[1, 1, 1.9]), "the body contradicts the record"),
         (lambda: polhode.attitude(T, RATES, kind="increment", body=[1, 2, 3]), "a flight is fitted to rates"),
         (lambda: polhode.attitude(T, kind="rate"), "rates: missing"),
