@@ -74,15 +74,12 @@ pub(crate) fn attitude(
     let found = aside(t.py(), move |_| {
         // noise that is found in the record holds that of the stamps
         let stamps = if noise.is_none() && stamps.is_finite() { stamps.min(0.0) } else { stamps };
+        let record = record::Record::from_samples(&times, &rates).ok();
         // rates that stand far out of their neighbours
-        let spikes = match record::Record::from_samples(&times, &rates) {
-            Ok(record) if kind == Kind::Rate => record.without_spikes().map(|(spikes, _)| spikes),
-            _ => None,
-        };
+        let spikes = record.as_ref().filter(|_| kind == Kind::Rate).and_then(record::Record::without_spikes);
         let noise = noise.unwrap_or_else(|| {
             // steps of digital readings count as noise
-            let rounding = record::Record::from_samples(&times, &rates)
-                .map_or(0.0, |record| record.rounding(&record.quanta()).sqrt());
+            let rounding = record.map_or(0.0, |record| record.rounding(&record.quanta()).sqrt());
             strapdown::noise(&times, &rates).max(rounding)
         });
         let sensor =
@@ -105,8 +102,7 @@ pub(crate) fn attitude(
         Ok::<_, String>((estimates, "exact motion".to_string(), noise, apart, spikes))
     })?;
     let (estimates, rule, noise, apart, spikes) = found.map_err(of("rates"))?;
-    if let Some([first, others @ ..]) = spikes.as_deref() {
-        let (count, time) = (1 + others.len(), first.time);
+    if let Some((count, time)) = spikes.and_then(|(spikes, _)| Some((spikes.len(), spikes.first()?.time))) {
         let samples =
             if count == 1 { "1 sample stands".to_string() } else { format!("{count} samples stand") };
         warn(
