@@ -174,7 +174,8 @@ pub(crate) fn advise(
     order: &str,
 ) -> PyResult<Advice> {
     let body = Body::of("body", body)?;
-    let start = body.start(&Start { omega, attitude, momentum, order: Order::of(order)? })?;
+    let order = Order::of(order)?;
+    let start = body.start(&Start { omega, attitude, momentum, time: start_time, order })?;
     let start = body.body.leave(&start);
     let mut demand = Demand::new(until, attitude_error);
     (demand.energy_error, demand.budget, demand.start_time) = (energy_error, budget, start_time);

@@ -88,7 +88,7 @@ impl Body {
             (Some(_), Some(_)) => Err(refused("omega, momentum: give one of the two")),
             (None, Some(momentum)) => {
                 let momentum = Vec3(Numbers::of("momentum", momentum)?.fixed()?);
-                let momentum_body = momentum - self.body.momentum_of_wheels_at(0.0).into();
+                let momentum_body = momentum - self.body.momentum_of_wheels_at(given.time).into();
                 self.body.enter(&State { attitude, momentum_body }).map_err(refused)
             }
             (omega, None) => {
@@ -121,6 +121,8 @@ pub(crate) struct Start<'a, 'py> {
     pub(crate) omega: Option<&'a Bound<'py, PyAny>>,
     pub(crate) attitude: Option<&'a Bound<'py, PyAny>>,
     pub(crate) momentum: Option<&'a Bound<'py, PyAny>>,
+    /// When it is, s: a motor changes the momentum of its wheel.
+    pub(crate) time: f64,
     pub(crate) order: Order,
 }
 

@@ -123,7 +123,7 @@ impl FreeMotion {
         let order = Order::of(order)?;
         let body = Body::of("inertia", inertia)?;
         through::unforced("inertia", &body)?;
-        let start = body.start(&Start { omega, attitude, momentum, order })?;
+        let start = body.start(&Start { omega, attitude, momentum, time: 0.0, order })?;
         Ok(FreeMotion { motion: flow::FreeMotion::from_point(body.body.inertia(), start), start, order })
     }
 

@@ -95,7 +95,7 @@ pub(crate) fn phase(
     order: &str,
 ) -> PyResult<PhaseDrift> {
     let body = Body::of("body", body)?;
-    let start = body.start(&Start { omega, attitude, momentum, order: Order::of(order)? })?;
+    let start = body.start(&Start { omega, attitude, momentum, time: 0.0, order: Order::of(order)? })?;
     let (start, moved, found) = (body.body.leave(&start), body.body.clone(), named(method, None)?);
     let drift = aside(py, move |_| found.phase(&moved, &start, step))?;
     Ok(PhaseDrift(body.settle(drift.map_err(refused))?))

@@ -58,11 +58,11 @@ pub(crate) fn run(
 ) -> PyResult<Samples> {
     let order = Order::of(order)?;
     let body = Body::of("body", body)?;
-    let start = body.start(&Start { omega, attitude, momentum, order })?;
-    let times = Numbers::of("times", times)?.list()?;
     if !start_time.is_finite() {
         return Err(refused(format!("start_time: {start_time} is no finite number of seconds")));
     }
+    let start = body.start(&Start { omega, attitude, momentum, time: start_time, order })?;
+    let times = Numbers::of("times", times)?.list()?;
     let asked = Asked { body: &body, start, times: &times, start_time, errors, order };
     let rows = if method == "exact" {
         if step.is_some() || tolerance.is_some() {

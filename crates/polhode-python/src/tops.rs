@@ -38,7 +38,7 @@ impl LagrangeTop {
     ) -> PyResult<Self> {
         let order = Order::of(order)?;
         let body = Body::of("body", body)?;
-        let start = body.start(&Start { omega, attitude, momentum, order })?;
+        let start = body.start(&Start { omega, attitude, momentum, time: 0.0, order })?;
         let top = match flow::ExactMotion::from_point(&body.body, start).map_err(of("body"))? {
             flow::ExactMotion::Lagrange(top) => *top,
             _ => return Err(of("body")(flow::LagrangeError::Free)),

@@ -98,7 +98,7 @@ impl GyrostatMotion {
     ) -> PyResult<Self> {
         let order = Order::of(order)?;
         let body = Body::of("body", body)?;
-        let start = body.start(&Start { omega, attitude, momentum, order })?;
+        let start = body.start(&Start { omega, attitude, momentum, time: 0.0, order })?;
         let motion = flow::GyrostatMotion::from_point(&body.body, start).map_err(of("body"))?;
         Ok(GyrostatMotion { motion, order })
     }

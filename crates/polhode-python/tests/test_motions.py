@@ -185,6 +185,17 @@ def test_members_of_an_ensemble_have_the_bits_of_one_body():
     assert_array_equal(heavy.omega[0, 1], LagrangeTop(top, [0, 0, 21], [0.97, 0.24, 0, 0]).at(3).omega)
 
 
+def test_the_momentum_of_a_start_counts_the_wheels_as_they_turn_then():
+    axis, omega, tensor = np.array([0.0, 0.6, 0.8]), np.array([0.1, 0.02, 0.3]), np.array([10.0, 12.0, 15.0])
+    wheel = polhode.Wheel(axis, 0.05, 60).driven(0.1, omega)
+    # in 5 s the motor gives the wheel 0.5 N m s
+    assert_allclose(wheel.speed(5.0, omega), 60 + 0.1 * 5 / 0.05, rtol=1e-13)
+    momentum = tensor * omega + 0.05 * wheel.speed(5.0, omega) * axis
+    body = Body(tensor, wheels=[wheel])
+    started = run("rk4", body, momentum=momentum, times=[5], start_time=5, step=0.01)
+    assert_allclose(started.omega[0], omega, rtol=1e-12)
+
+
 def test_members_of_a_body_of_the_catalogue_start_at_its_attitude():
     body = polhode.body("toutatis")
     started = Ensemble("toutatis", [body.omega, body.omega]).at([0]).attitude
