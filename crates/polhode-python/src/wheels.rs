@@ -30,6 +30,15 @@ fn vector(name: &'static str, value: &Bound<'_, PyAny>) -> PyResult<Vector3<f64>
     Numbers::of(name, value)?.vector()
 }
 
+/// An angular velocity of finite numbers, of which a wheel is made.
+fn rate(value: &Bound<'_, PyAny>) -> PyResult<Vector3<f64>> {
+    let omega = vector("omega", value)?;
+    match omega.iter().find(|part| !part.is_finite()) {
+        Some(part) => Err(refused(format!("omega: {part} is no finite number of rad/s"))),
+        None => Ok(omega),
+    }
+}
+
 #[pymethods]
 impl Wheel {
     #[new]
@@ -39,7 +48,7 @@ impl Wheel {
 
     /// The same wheel turning without friction: it has its speed where the body turns at `omega`, rad/s, body axes.
     fn free(&self, omega: &Bound<'_, PyAny>) -> PyResult<Self> {
-        Ok(Wheel(self.0.free(vector("omega", omega)?)))
+        Ok(Wheel(self.0.free(rate(omega)?)))
     }
 
     /// The same wheel with a motor that turns it by `torque`, N m, against the body from the time `begin` to `end`, s, or on without end; before and after
@@ -47,12 +56,15 @@ impl Wheel {
     #[pyo3(signature = (torque, omega, *, begin = 0.0, end = None))]
     fn driven(&self, torque: f64, omega: &Bound<'_, PyAny>, begin: f64, end: Option<f64>) -> PyResult<Self> {
         let works = [begin, end.unwrap_or(f64::INFINITY)];
-        self.0.driven(torque, works, vector("omega", omega)?).map(Wheel).map_err(refused)
+        self.0.driven(torque, works, rate(omega)?).map(Wheel).map_err(refused)
     }
 
     /// Its speed against the body at the time `t`, s, where the body turns at `omega`, rad/s, body axes.
     fn speed(&self, t: f64, omega: &Bound<'_, PyAny>) -> PyResult<f64> {
-        Ok(self.0.speed(t, vector("omega", omega)?))
+        if !t.is_finite() {
+            return Err(refused(format!("t: {t} is no finite number of seconds")));
+        }
+        Ok(self.0.speed(t, rate(omega)?))
     }
 
     /// Its axis, of length 1, body axes.

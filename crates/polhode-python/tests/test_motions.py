@@ -412,5 +412,12 @@ def test_a_body_with_wheels_moves_as_its_equations_say():
         polhode.FreeMotion(body, omega)
     with pytest.raises(polhode.PolhodeError, match="does not fit"):
         polhode.Body([1, 2, 2.5], wheels=[polhode.Wheel([1, 0, 0], 0.6, 1)])
+    for call, words in [
+        (lambda: held.free([0, np.nan, 0]), "omega: NaN is no finite number"),
+        (lambda: held.driven(0.1, [0, 0, np.inf]), "omega: inf is no finite number"),
+        (lambda: held.free(omega).speed(np.nan, omega), "t: NaN is no finite number"),
+    ]:
+        with pytest.raises(polhode.PolhodeError, match=words):
+            call()
     with pytest.raises(polhode.PolhodeError, match="works with"):
         polhode.GyrostatMotion(polhode.Body(tensor, wheels=[held.driven(0.1, omega)]), omega)
