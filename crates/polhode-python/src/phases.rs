@@ -8,6 +8,7 @@ use crate::bodies::{Body, Start};
 use crate::calm::aside;
 use crate::error::refused;
 use crate::runs::named;
+use crate::units::finite;
 
 /// How fast the attitude error of a method grows: a shift in time along the polhode, and a twist about L.
 ///
@@ -46,9 +47,9 @@ impl PhaseDrift {
     /// >>> shift, twist, tilt = drift.departure(1e4)
     /// >>> abs(shift / (1e4 * drift.shift) - 1) < 0.01 and abs(tilt) < 0.01
     /// True
-    fn departure(&self, t: f64) -> (f64, f64, f64) {
-        let found = self.0.departure(t);
-        (found.shift.hi(), found.twist.hi(), found.tilt.hi())
+    fn departure(&self, t: f64) -> PyResult<(f64, f64, f64)> {
+        let found = self.0.departure(finite("t", t)?);
+        Ok((found.shift.hi(), found.twist.hi(), found.tilt.hi()))
     }
 
     /// The attitude error after the time t, s, without oscillations and rounding, rad.
@@ -63,8 +64,8 @@ impl PhaseDrift {
     }
 
     /// What rounding adds to the attitude after the time t, s, by order of magnitude, rad.
-    fn rounding(&self, t: f64) -> f64 {
-        self.0.rounding(t)
+    fn rounding(&self, t: f64) -> PyResult<f64> {
+        Ok(self.0.rounding(finite("t", t)?))
     }
 
     fn __repr__(&self) -> String {

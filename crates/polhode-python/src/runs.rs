@@ -15,6 +15,7 @@ use crate::bodies::{Body, Start};
 use crate::calm::Listener;
 use crate::error::{of, refused};
 use crate::samples::{Row, Rows, Samples};
+use crate::units::finite;
 
 /// Steps between two looks for Ctrl-C.
 const PART: u64 = 4096;
@@ -58,10 +59,8 @@ pub(crate) fn run(
 ) -> PyResult<Samples> {
     let order = Order::of(order)?;
     let body = Body::of("body", body)?;
-    if !start_time.is_finite() {
-        return Err(refused(format!("start_time: {start_time} is no finite number of seconds")));
-    }
-    let start = body.start(&Start { omega, attitude, momentum, time: start_time, order })?;
+    let time = finite("start_time", start_time)?;
+    let start = body.start(&Start { omega, attitude, momentum, time, order })?;
     let times = Numbers::of("times", times)?.list()?;
     let asked = Asked { body: &body, start, times: &times, start_time, errors, order };
     let rows = if method == "exact" {

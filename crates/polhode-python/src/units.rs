@@ -15,6 +15,15 @@ pub(crate) fn positive(name: &'static str, value: f64) -> PyResult<f64> {
     }
 }
 
+/// A time, s.
+pub(crate) fn finite(name: &'static str, value: f64) -> PyResult<f64> {
+    if value.is_finite() {
+        Ok(value)
+    } else {
+        Err(refused(format!("{name}: {value} is no finite number of seconds")))
+    }
+}
+
 pub(crate) fn share(value: f64) -> PyResult<f64> {
     if (0.0..1.0).contains(&value) {
         Ok(value)

@@ -11,6 +11,7 @@ use crate::bodies::{Body, Start};
 use crate::error::{of, refused};
 use crate::motions::Motion;
 use crate::states::States;
+use crate::units::finite;
 
 /// A wheel, symmetric about its axis, that a body carries: `Body(inertia, wheels=[...])`. The inertia of the body includes it, at rest on
 /// the body.
@@ -61,10 +62,7 @@ impl Wheel {
 
     /// Its speed against the body at the time `t`, s, where the body turns at `omega`, rad/s, body axes.
     fn speed(&self, t: f64, omega: &Bound<'_, PyAny>) -> PyResult<f64> {
-        if !t.is_finite() {
-            return Err(refused(format!("t: {t} is no finite number of seconds")));
-        }
-        Ok(self.0.speed(t, rate(omega)?))
+        Ok(self.0.speed(finite("t", t)?, rate(omega)?))
     }
 
     /// Its axis, of length 1, body axes.
