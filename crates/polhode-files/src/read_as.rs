@@ -73,6 +73,8 @@ pub struct ReadAs {
     pub rates: Option<(RateUnit, NamedBy)>,
     /// What the times are, such as `ms` or `dates`, and what named it.
     pub times: (String, NamedBy),
+    /// The first time as it is written, where the others count from it: dates, counts since 1970, whole seconds beside nanoseconds.
+    pub since: Option<String>,
     /// Samples a second, by the median time between two of them; `None` of a single sample.
     pub sample_rate: Option<f64>,
     /// Which columns were taken as the rates about x, y and z, where a setting says so.

@@ -5,10 +5,10 @@ use std::path::Path;
 use nalgebra::UnitQuaternion;
 use polhode::audit::{Reading, Trajectory};
 use polhode::strapdown::Estimate;
-use polhode_files::ReadOptions;
 use polhode_files::error::{Error, tell, warn};
 use polhode_files::text::{rounded, visible};
 use polhode_files::trajectory::read;
+use polhode_files::{ReadAs, ReadOptions};
 
 use crate::reference::attitudes;
 
@@ -20,6 +20,8 @@ pub(super) struct Reference {
     pub(super) name: String,
     rows: Trajectory,
     reading: Reading,
+    /// The first time as it is written, where the others count from it.
+    since: Option<String>,
     /// Whether a time of the record is one of its own.
     has_met: bool,
     /// Attitudes that were to be compared, those of them at a time of the reference, and of these the ones whose error is inside the 95 % of its budget.
@@ -35,11 +37,13 @@ impl Reference {
         let found = read(path, &ReadOptions::default())?;
         let name = visible(&path.display().to_string()).into_owned();
         let refused = |rule: &str, remedy: &str| Error::input("--against", &name, rule, remedy);
+        let since = found.read_as.since.clone();
         let (rows, reading) = attitudes(found, &name, refused)?;
         Ok(Self {
             name,
             rows,
             reading,
+            since,
             has_met: false,
             asked: 0,
             compared: 0,
@@ -47,6 +51,19 @@ impl Reference {
             largest: 0.0,
             at: 0.0,
         })
+    }
+
+    /// Refuses times that count from the first row of the file, where those of the `record` do not count from the same moment.
+    pub(super) fn check_start(&self, record: &ReadAs) -> Result<(), Error> {
+        let Some(first) = self.since.as_deref().filter(|_| self.since != record.since) else { return Ok(()) };
+        let other = record.since.as_deref().unwrap_or("another time");
+        let rule = format!(
+            "its times count from its first row, {}, and those of the record from {}",
+            visible(first),
+            visible(other)
+        );
+        let remedy = "let both files begin at one time, or write the times of both in s since one moment";
+        Err(Error::input("--against", &self.name, &rule, remedy))
     }
 
     /// Its attitude at the time `t`, s.

@@ -110,6 +110,7 @@ impl Attitude {
         let mut found = Vec::new();
         while let Some(Part { record, continues, .. }) = readings.next()? {
             if let Some(reference) = &mut reference {
+                reference.check_start(&readings.read_as())?;
                 let times = record.segments.iter().flat_map(|segment| segment.times());
                 reference.check(times, readings.has_more())?;
             }

@@ -6,10 +6,10 @@ use clap::{Args, ValueEnum};
 use polhode::record::{Segment, Spike};
 use polhode::strapdown::{Kind, StrapdownError};
 use polhode::units::RateUnit;
-use polhode_files::NamedBy;
 use polhode_files::error::{Error, tell, warn};
 use polhode_files::record::{Part, Parts};
 use polhode_files::text::{rounded, short};
+use polhode_files::{NamedBy, ReadAs};
 
 use crate::flags::record::{RecordArguments, of_a_row, tell_skipped};
 
@@ -146,6 +146,11 @@ impl Readings {
         self.parts.name()
     }
 
+    /// In which units it is read, as far as its rows tell.
+    pub(super) fn read_as(&self) -> ReadAs {
+        self.parts.read_as()
+    }
+
     /// Whether there are further parts.
     pub(super) fn has_more(&self) -> bool {
         self.parts.has_more()
@@ -259,7 +264,7 @@ impl Readings {
 
     /// The unit of the times; where it is guessed from large numbers, a warning.
     fn tell_times(&self) {
-        let mut read_as = self.parts.read_as();
+        let mut read_as = self.read_as();
         read_as.rates = None;
         let (name, units) = (self.name(), read_as.units());
         let (times, by) = &read_as.times;

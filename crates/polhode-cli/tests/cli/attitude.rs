@@ -229,3 +229,23 @@ fn an_attitude_that_is_lost_ends_with_exit_code_1() {
     assert_eq!((answer.code, answer.out.lines().count()), (1, 402));
     assert!(answer.err.contains("the attitude is lost: from t = "), "{}", answer.err);
 }
+
+#[test]
+fn times_that_count_from_the_first_rows_of_two_files_are_compared_where_these_are_of_one_time() {
+    let scratch = Scratch::new("attitude-since");
+    let first = 1_700_000_000_000_u64; // ms since 1970
+    let file = |name: &str, first: u64, head: &str, row: &str| {
+        let rows: String = (0..20).map(|k| format!("{},{row}\n", first + 100 * k)).collect();
+        scratch.file(name, format!("{head}\n{rows}"))
+    };
+    let record = file("record.csv", first, "t,wx (rad/s),wy (rad/s),wz (rad/s)", "0.01,0.02,0.03");
+    let reference = |name: &str, first: u64| file(name, first, "t,q_w,q_x,q_y,q_z", "1,0,0,0");
+    let one = run(&format!("attitude {record} --kind rate --against {}", reference("one.csv", first)));
+    assert!(one.code == 0 && one.err.contains("20 rows compared"), "{one:?}");
+    // half a second later, five of its rows
+    let later = reference("later.csv", first + 500);
+    let says = "from its first row, 1700000000500, and those of the record from 1700000000000";
+    refused_with(&["attitude", &record, "--against", &later], &["--against", "later.csv", says]);
+    let plain = scratch.file("plain.csv", "t,wx (rad/s),wy (rad/s),wz (rad/s)\n0,1,0,0\n0.1,1,0,0\n");
+    refused_with(&["attitude", &plain, "--against", &later], &["1700000000500", "another time"]);
+}

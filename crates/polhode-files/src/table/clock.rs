@@ -13,6 +13,8 @@ pub(crate) struct Clock {
     unit: Option<TimeUnit>,
     /// Known with the first time.
     kind: Option<Kind>,
+    /// The first time, where the others count from it.
+    since: Option<String>,
 }
 
 enum Kind {
@@ -33,13 +35,15 @@ const LATEST: f64 = 4.0;
 impl Clock {
     /// With the unit that is known of numbers.
     pub(crate) fn new(unit: Option<TimeUnit>) -> Self {
-        Clock { unit, kind: None }
+        Clock { unit, kind: None, since: None }
     }
 
     /// The time of a cell, s; with `nanoseconds` it holds whole seconds.
     pub(crate) fn seconds(&mut self, cell: &str, nanoseconds: Option<&str>) -> Option<f64> {
         if self.kind.is_none() {
-            self.kind = Some(self.kind_of(cell, nanoseconds.is_some())?);
+            let kind = self.kind_of(cell, nanoseconds.is_some())?;
+            self.since = (!matches!(kind, Kind::Numbers(_))).then(|| cell.into());
+            self.kind = Some(kind);
         }
         let number = || cell.parse::<f64>().ok();
         let time = match self.kind.as_ref()? {
@@ -54,6 +58,11 @@ impl Clock {
             Kind::Dates(first) => cell.parse::<Date>().ok()?.seconds_since(first).ok()?,
         };
         time.is_finite().then_some(time)
+    }
+
+    /// The first time as it is written, where the others count from it.
+    pub(crate) fn since(&self) -> Option<&str> {
+        self.since.as_deref()
     }
 
     /// What the times are where they are no numbers of a unit, once one was read.

@@ -451,6 +451,7 @@ impl<'t> Table<'t> {
                 let steps = if matches!(unit, TimeUnit::Multiple(_)) { "steps of " } else { "" };
                 (format!("{steps}{unit}"), of_times)
             }),
+            since: self.clock.since().map(String::from),
             sample_rate: sample_rate(steps),
             axes: None,
         }
