@@ -109,8 +109,10 @@ impl Attitude {
         let (mut lost, mut apart): (Option<f64>, Apart) = (None, Apart::default());
         let mut found = Vec::new();
         while let Some(Part { record, continues, .. }) = readings.next()? {
+            let read_as = readings.read_as();
+            self.reading.check_times(&read_as)?;
             if let Some(reference) = &mut reference {
-                reference.check_start(&readings.read_as())?;
+                reference.check_start(&read_as)?;
                 let times = record.segments.iter().flat_map(|segment| segment.times());
                 reference.check(times, readings.has_more())?;
             }

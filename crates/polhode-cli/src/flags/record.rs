@@ -137,6 +137,11 @@ impl RecordArguments {
         Parts::open(path, &self.options(true), &self.windows(0))
     }
 
+    /// Refuses a unit of time or a rate of samples where the times of a file are not numbers of one unit.
+    pub(crate) fn check_times(&self, read_as: &ReadAs) -> Result<(), Error> {
+        self.table.check_times(read_as)
+    }
+
     pub(crate) fn check_windows(&self, files: usize) -> Result<(), Error> {
         if let Some((n, w)) = self.window.iter().find_map(|w| w.file.filter(|n| *n > files).map(|n| (n, w))) {
             let value = format!("{n}:{:?},{:?}", w.span.0, w.span.1);
@@ -182,7 +187,7 @@ impl RecordArguments {
 
     fn read(&self, path: &Path, wheel: Option<Vector3<f64>>) -> Result<FoundRecord, Error> {
         let found = record::open(path, &self.options(false), wheel).map_err(of_a_row)?;
-        self.table.check_times(&found.read_as)?;
+        self.check_times(&found.read_as)?;
         tell_skipped((found.skipped.len(), found.skipped.first()), found.record.samples());
         found.remarks.iter().for_each(|remark| warn(remark));
         Ok(found)

@@ -273,7 +273,8 @@ fn a_unit_of_time_is_refused_where_times_have_theirs() {
     let header = "stamp.secs,stamp.nsecs,q_w,q_x,q_y,q_z,wx,wy,wz";
     let file = made(&scratch, "stamp.csv", WITH_RATES, header, stamped);
     assert_eq!(run(&format!("audit {file} {BODY}")).code, 0);
-    for command in [format!("audit {file} {BODY}"), format!("fit {file} --from rates")] {
+    let attitude = format!("attitude {file} --kind rate");
+    for command in [format!("audit {file} {BODY}"), format!("fit {file} --from rates"), attitude] {
         refused(&format!("{command} --time-unit ms"), &["--time-unit: 'ms'", "are s and ns already"]);
     }
 }
