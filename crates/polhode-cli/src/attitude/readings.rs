@@ -255,10 +255,13 @@ impl Readings {
                 if in_bursts > 0 { format!(", {in_bursts} of them in bursts") } else { String::new() };
             warn(&format!("{spikes} spikes are left out{bursts}, the first at line {line} ({time} s)"));
         }
-        if saturated > 0 && self.segments < 2 {
-            warn(&format!(
-                "{saturated} samples at the end of the sensor's range are left out, at an end of the record"
-            ));
+        if saturated > 0 {
+            warn(&format!("{saturated} samples at the end of the sensor's range are left out"));
+        }
+        if self.segments > 1 {
+            let (name, parts) = (self.name(), self.segments);
+            let rule = "each has a start of its own, as the turn between them is not known";
+            tell("note", &format!("{name}: {parts} parts without a gap; {rule}"));
         }
     }
 

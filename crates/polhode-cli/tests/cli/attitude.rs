@@ -173,6 +173,18 @@ fn records_that_tell_no_attitude_are_refused_by_name() {
     refused_with(&["attitude", &gap], &["gap.csv, line 42", "a gap from 3.9", "9", "--window", "--restart"]);
     let restarted = run(&format!("attitude {gap} --kind rate --restart"));
     assert_eq!((restarted.code, restarted.out.lines().count()), (0, 81), "{}", restarted.err);
+    assert!(restarted.err.contains("2 parts without a gap"), "{}", restarted.err);
+    // readings that rise and fall as a square, and six at the end of the range in between
+    let squares = (0..=10).chain([10; 5]).chain((0..10).rev()).map(|k: i32| f64::from(k * k) / 100.0);
+    let clipped: String =
+        squares.enumerate().map(|(k, x)| format!("{:.1},{x},0.1,0.2\n", 0.1 * k as f64)).collect();
+    let clipped = file("clipped.csv", &clipped);
+    refused_with(&["attitude", &clipped], &["at the end of its range (6 samples in all)", "--restart"]);
+    let restarted = run(&format!("attitude {clipped} --kind rate --restart"));
+    assert_eq!(restarted.code, 0, "{}", restarted.err);
+    for says in ["6 samples at the end of the sensor's range are left out", "2 parts without a gap"] {
+        assert!(restarted.err.contains(says), "{says}: {}", restarted.err);
+    }
     assert_eq!(run(&format!("attitude {gap} --kind rate --window 9,20")).code, 0);
     let twice = file("twice.csv", &format!("{even}3.9,2,0,0\n4,1,0,0\n"));
     refused_with(
