@@ -158,15 +158,21 @@ impl Readings {
 
     /// The next part; behind the last, what was left out is told.
     pub(super) fn next(&mut self) -> Result<Option<Part>, Error> {
-        let Some(part) = self.parts.next().map_err(of_a_row)? else {
+        let Some(mut part) = self.parts.next().map_err(of_a_row)? else {
             self.tell();
             return Ok(None);
         };
         self.found.add(&part);
         self.check()?;
+        // a long burst that is left out parts a segment as a gap does
+        let segments = part.record.segments.iter().enumerate();
+        let spans: Vec<(usize, f64, f64)> = segments.flat_map(|(k, segment)| stretches(k, segment)).collect();
+        if spans.len() > part.record.segments.len() {
+            part.record = part.record.spans(spans);
+        }
         for (k, segment) in part.record.segments.iter().enumerate() {
             if !(k == 0 && part.continues) {
-                self.check_gap(segment)?;
+                self.check_gap(segment, &part.spikes)?;
                 self.segments += 1;
             }
             self.last = segment.times().last().copied().or(self.last);
@@ -190,11 +196,13 @@ impl Readings {
     }
 
     /// Refuses a `segment` that does not go on where the samples before it end.
-    fn check_gap(&self, segment: &Segment) -> Result<(), Error> {
+    fn check_gap(&self, segment: &Segment, spikes: &[Spike]) -> Result<(), Error> {
         let (Some(end), Some(start), false) = (self.last, segment.times().first(), self.restarts) else {
             return Ok(());
         };
+        let is_burst = |spike: &Spike| spike.burst.is_some() && end < spike.time && spike.time < *start;
         let cause = match self.found.saturated {
+            _ if spikes.iter().any(is_burst) => "a burst of readings that are left out".to_string(),
             0 => "a gap".to_string(),
             count => {
                 format!("a part in which the sensor is at the end of its range ({count} samples in all)")
@@ -303,6 +311,14 @@ impl Readings {
             _ => Error::Input(format!("{}: {error}", self.name())),
         }
     }
+}
+
+/// The segment with number `k`, and from when to when it has samples without a long burst between them, s.
+fn stretches(k: usize, segment: &Segment) -> impl Iterator<Item = (usize, f64, f64)> {
+    segment.stretches().filter_map(move |range| {
+        let own = segment.times().get(range)?;
+        Some((k, *own.first()?, *own.last()?))
+    })
 }
 
 impl Found {

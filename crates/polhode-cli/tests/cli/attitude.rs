@@ -261,3 +261,27 @@ fn times_that_count_from_the_first_rows_of_two_files_are_compared_where_these_ar
     let plain = scratch.file("plain.csv", "t,wx (rad/s),wy (rad/s),wz (rad/s)\n0,1,0,0\n0.1,1,0,0\n");
     refused_with(&["attitude", &plain, "--against", &later], &["1700000000500", "another time"]);
 }
+
+#[test]
+fn a_long_burst_that_is_left_out_is_a_gap() {
+    let scratch = Scratch::new("attitude-burst");
+    let quiet = simulated(&scratch, "quiet.csv", "--every 0.05 --noise 1e-2");
+    let quiet = std::fs::read_to_string(quiet).unwrap();
+    // fifty deviations on each axis, in twelve rows
+    let rows = quiet.lines().enumerate().map(|(k, line)| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let off = |axis: usize, by: f64| cells[axis].parse::<f64>().unwrap() + by;
+        match k {
+            200..=211 => format!("{},{},{},{}\n", cells[0], off(1, 0.5), off(2, -0.5), off(3, 0.5)),
+            _ => format!("{line}\n"),
+        }
+    });
+    let record = scratch.file("burst.csv", rows.collect::<String>());
+    let says = ["a burst of readings that are left out from ", "how the body turned in it", "--restart"];
+    refused_with(&["attitude", &record, "--kind", "rate"], &says);
+    let restarted = run(&format!("attitude {record} --kind rate --restart"));
+    assert_eq!(restarted.code, 0, "{}", restarted.err);
+    assert!(restarted.err.contains("12 of them in bursts"), "{}", restarted.err);
+    let sigma = column(&restarted.out, "attitude_sigma");
+    assert_eq!(sigma.iter().filter(|sigma| **sigma == 0.0).count(), 2);
+}
