@@ -31,7 +31,7 @@ pub use choice::{attitudes, choose};
 pub use error::StrapdownError;
 pub use flight::{Flight, FlightError};
 pub use kind::{Kind, UnknownKind};
-pub use noise::noise;
+pub use noise::{NOISE_SAMPLES, noise};
 pub use rule::{MOST_SAMPLES, Magnus, Rule, RuleError};
 pub use sensor::Sensor;
 pub use stream::{Stamped, Strapdown};

@@ -5,10 +5,13 @@ use nalgebra::Vector3;
 /// Degrees of the polynomials that are taken out of the readings, plus one: differences of these orders are tried.
 const ORDERS: [usize; 4] = [4, 6, 8, 10];
 
+/// Samples that [`noise`] tells anything of, at least.
+pub const NOISE_SAMPLES: usize = ORDERS[0] + 1;
+
 /// Squares above so many medians are blows and catches, not noise.
 const OUTLYING: f64 = 30.0;
 
-/// Standard deviation of the white noise of a component, in the unit of the readings; 0 where there are too few to tell.
+/// Standard deviation of the white noise of a component, in the unit of the readings; 0 of fewer than [`NOISE_SAMPLES`].
 ///
 /// The combination Σ c_i r_i of p + 1 neighbours with c_i = 1/Π(t_i − t_j) vanishes for polynomials of degree p − 1; divided by |c|
 /// it has the deviation of the noise, and beside it a rest of the motion that falls with p. Of several p the least is taken: what is
@@ -23,7 +26,7 @@ const OUTLYING: f64 = 30.0;
 #[must_use]
 pub fn noise(times: &[f64], readings: &[Vector3<f64>]) -> f64 {
     let found = ORDERS.iter().filter_map(|order| variance(times, readings, *order));
-    found.fold(f64::INFINITY, f64::min).sqrt().min(f64::MAX) * f64::from(times.len() > ORDERS[0])
+    found.fold(f64::INFINITY, f64::min).sqrt().min(f64::MAX) * f64::from(times.len() >= NOISE_SAMPLES)
 }
 
 fn variance(times: &[f64], readings: &[Vector3<f64>], order: usize) -> Option<f64> {

@@ -10,13 +10,14 @@ use polhode_files::text::rounded;
 
 use super::readings::Readings;
 use super::rule;
+use super::sensor::NoiseBy;
 
 /// How readings become attitudes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Course {
     pub(super) rule: Rule,
     pub(super) sensor: Sensor,
-    pub(super) noise_is_found: bool,
+    pub(super) noise_by: NoiseBy,
 }
 
 /// An attitude by the readings alone, and that of a known body, where there is one.
@@ -35,6 +36,7 @@ pub(super) struct Integration {
     /// With readings that are averages, where they are only taken for rates.
     averages: Option<Strapdown<f64>>,
     last: Option<Estimate>,
+    samples: usize,
 }
 
 impl Integration {
@@ -57,6 +59,7 @@ impl Integration {
             trapezoid: other(kind, Rule::Trapezoid, rule != Rule::Trapezoid),
             averages: other(Kind::Average, rule, readings.is_assumed),
             last: None,
+            samples: 0,
         })
     }
 
@@ -78,6 +81,7 @@ impl Integration {
                 }
             }
         }
+        self.samples += segment.times().len();
         self.last = found.last().map(|found| found.integrated).or(self.last);
         Ok(())
     }
@@ -90,7 +94,8 @@ impl Integration {
         let Some(last) = found.last().map(|found| found.integrated).or(self.last) else { return };
         let budget = &last.budget;
         let mut parts = vec![format!("truncation {:.1e} rad", budget.truncation)];
-        let source = if self.course.noise_is_found { " (noise found in the record)" } else { "" };
+        let by_record = self.course.noise_by == NoiseBy::Record;
+        let source = if by_record { " (noise found in the record)" } else { "" };
         parts.push(format!("random walk {:.1e} rad{source}", budget.random_walk));
         let others = [("bias", budget.bias), ("scale", budget.scale), ("stamps", budget.stamps)];
         parts.extend(others.iter().filter(|(_, x)| *x > 0.0).map(|(name, x)| format!("{name} {x:.1e} rad")));
@@ -104,6 +109,13 @@ impl Integration {
         });
         let (rule, time) = (rule::words(self.course.rule), rounded(last.time));
         tell("note", &format!("{rule}; at t = {time} s: {}{line}", parts.join(", ")));
+        let through = if let Rule::Magnus(magnus) = self.course.rule { magnus.samples() } else { 2 };
+        if (2..=through).contains(&self.samples) {
+            warn(&format!(
+                "one polynomial goes through all {} samples: how far the motion between them is from it is not known, and not in the truncation",
+                self.samples
+            ));
+        }
         if let Some(angle) = apart(self.averages) {
             let message = format!(
                 "the readings are taken for rates at the times of their rows, as their unit allows; were they averages since the row \

@@ -14,8 +14,8 @@ use clap::{Args, ValueEnum};
 use nalgebra::UnitQuaternion;
 use polhode::record::{Record, Segment};
 use polhode::rotation::EulerSequence;
-use polhode::strapdown::Estimate;
-use polhode_files::error::Error;
+use polhode::strapdown::{Estimate, NOISE_SAMPLES};
+use polhode_files::error::{Error, warn};
 use polhode_files::numbers::{quaternion, turn};
 use polhode_files::record::Part;
 use polhode_files::text::rounded;
@@ -30,7 +30,7 @@ use flight::Apart;
 use integration::{Course, Found, Integration};
 use readings::{KindArguments, Readings};
 use rule::RuleArguments;
-use sensor::SensorArguments;
+use sensor::{NoiseBy, SensorArguments};
 
 const EXAMPLES: &str = "Examples:
   polhode simulate --body spacecraft --omega 0.3,1,0.4 --until 60 \\
@@ -139,6 +139,11 @@ impl Attitude {
             reference.tell();
         }
         apart.tell();
+        if course.is_some_and(|course| course.noise_by == NoiseBy::Nothing) {
+            warn(&format!(
+                "fewer than {NOISE_SAMPLES} samples: their noise cannot be found, and attitude_sigma is without it; give --noise"
+            ));
+        }
         rows.finish()?;
         match lost {
             None => Ok(()),
@@ -156,7 +161,7 @@ impl Attitude {
         let noise = self.sensor.noise(record);
         let sensor = self.sensor.sensor(noise);
         let rule = self.rule.rule(readings, record, sensor)?;
-        Ok(Course { rule, sensor, noise_is_found: noise.is_found })
+        Ok(Course { rule, sensor, noise_by: noise.by })
     }
 
     fn begin(

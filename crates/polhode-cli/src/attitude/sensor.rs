@@ -2,7 +2,7 @@
 
 use clap::Args;
 use polhode::record::Record;
-use polhode::strapdown::{Sensor, noise};
+use polhode::strapdown::{NOISE_SAMPLES, Sensor, noise};
 use polhode_files::numbers::not_negative;
 
 /// Standard deviations of the errors of the sensor.
@@ -23,23 +23,34 @@ pub(super) struct SensorArguments {
     stamps: Option<f64>,
 }
 
-/// The noise of a reading, and whether it was found in the record.
+/// The noise of a reading, and what tells it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Noise {
     sigma: f64,
-    pub(super) is_found: bool,
+    pub(super) by: NoiseBy,
+}
+
+/// What tells the noise.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum NoiseBy {
+    Flag,
+    Record,
+    /// The record has too few samples.
+    Nothing,
 }
 
 impl SensorArguments {
     /// As given, or that of the longest segment; steps of digital readings count as noise.
     pub(super) fn noise(&self, record: &Record) -> Noise {
         if let Some(sigma) = self.noise {
-            return Noise { sigma, is_found: false };
+            return Noise { sigma, by: NoiseBy::Flag };
         }
         let longest = record.segments.iter().max_by_key(|segment| segment.times().len());
         let found = longest.map_or(0.0, |segment| noise(segment.times(), segment.rates()));
         let rounding = record.rounding(&record.quanta()).sqrt();
-        Noise { sigma: found.max(rounding), is_found: true }
+        let is_enough = longest.is_some_and(|segment| segment.times().len() >= NOISE_SAMPLES);
+        let by = if is_enough { NoiseBy::Record } else { NoiseBy::Nothing };
+        Noise { sigma: found.max(rounding), by }
     }
 
     pub(super) fn sensor(&self, noise: Noise) -> Sensor {
@@ -47,6 +58,6 @@ impl SensorArguments {
             .with_noise(noise.sigma)
             .with_bias(self.bias.unwrap_or(0.0))
             .with_scale(self.scale_error.unwrap_or(0.0))
-            .with_stamps(self.stamps.filter(|_| !noise.is_found).unwrap_or(0.0))
+            .with_stamps(self.stamps.filter(|_| noise.by != NoiseBy::Record).unwrap_or(0.0))
     }
 }

@@ -92,6 +92,28 @@ fn a_noisy_record_has_its_random_walk() {
     assert!(other.err.contains("the body contradicts the record"), "{}", other.err);
 }
 
+/// Four readings of whatever noise lie on a cubic.
+#[test]
+fn a_record_that_is_too_short_for_its_budget_says_what_is_missing() {
+    let scratch = Scratch::new("attitude-short");
+    let told = |rows: u32, flags: &str| {
+        let rows: String = (0..rows).map(|k| format!("{},0.1,0.3,0.2\n", 0.25 * f64::from(k))).collect();
+        let file = scratch.file("short.csv", format!("t,wx,wy,wz\n{rows}"));
+        let answer = run(&format!("attitude {file} --kind rate {flags}"));
+        assert_eq!(answer.code, 0, "{answer:?}");
+        answer.err
+    };
+    let noise = "warning: fewer than 5 samples: their noise cannot be found";
+    let truncation = "warning: one polynomial goes through all 4 samples";
+    let four = told(4, "--order 4 --samples 4");
+    assert!(four.contains(noise) && four.contains(truncation), "{four}");
+    assert!(!four.contains("noise found in the record"), "{four}");
+    let stated = told(4, "--samples 2 --order 2 --noise 1e-3 --stamps 1e-3");
+    assert!(!stated.contains("warning: "), "{stated}");
+    let five = told(5, "--order 4 --samples 4");
+    assert!(!five.contains("warning: ") && five.contains("noise found in the record"), "{five}");
+}
+
 #[test]
 fn the_kind_is_told_by_the_unit_or_asked_for() {
     let scratch = Scratch::new("attitude-kind");
