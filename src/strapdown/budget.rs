@@ -88,8 +88,9 @@ impl Estimate {
     #[must_use]
     pub fn holds(&self, truth: UnitQuaternion<f64>) -> bool {
         let error = self.error(truth);
-        let inverse = self.budget.covariance.try_inverse();
-        inverse.map_or(error.norm() == 0.0, |inverse| error.dot(&(inverse * error)) <= CHI_SQUARED_95)
+        // where little but the truncation is in it, an inverse is one of its rounding, and may let any error in
+        let root = self.budget.covariance.cholesky();
+        root.map_or(error.norm() == 0.0, |root| error.dot(&root.solve(&error)) <= CHI_SQUARED_95)
     }
 
     /// How far another estimate of the same attitude is from this one, in standard deviations of their difference, as if their errors were
@@ -270,5 +271,22 @@ impl Richer {
             if found.magnitude().is_finite() { found } else { turn(half.straight(k)) }
         });
         first * second
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// (1 + ε)², (1 − ε)² and 1 − ε² are rounded to 1 + 2ε, 1 − 2ε and 1 with ε = 2⁻²⁷: by the adjugate the determinant is near −2⁻⁵³ in
+    /// place of 0, and the first entry of the inverse near 2.
+    #[test]
+    fn a_budget_of_the_truncation_alone_holds_no_error_across_it() {
+        let tiny = 1.0 / f64::from(1 << 27);
+        let none = Matrix3::zeros();
+        let budget = Budget::of(Vector3::new(1.0, 1.0 + tiny, 1.0 - tiny), none, none, none, none);
+        let estimate = Estimate { time: 0.0, attitude: UnitQuaternion::identity(), budget };
+        assert!(estimate.holds(UnitQuaternion::identity()));
+        assert!(!estimate.holds(Quat::exponential(Vec3::<f64>::unit(0)).into()));
     }
 }
