@@ -440,6 +440,10 @@ fn readings_that_tell_no_attitude_are_refused_by_name() {
     let sensor = Sensor::default().with_bias(-1.0);
     let bad = Budgeted::new(Kind::Rate, Rule::Hold, UnitQuaternion::identity(), sensor).unwrap_err();
     assert!(bad.to_string().contains("the bias"), "{bad}");
+    // 0 times its square would be no number, and count as 0
+    let sensor = Sensor::default().with_scale(1e200);
+    let bad = Budgeted::new(Kind::Rate, Rule::Hold, UnitQuaternion::identity(), sensor).unwrap_err();
+    assert_eq!(bad, StrapdownError::Sensor { name: "the scale error", value: 1e200 });
     assert!(
         attitudes(&[], &[], Kind::Rate, Rule::Hold, UnitQuaternion::identity(), Sensor::default()).is_err()
     );

@@ -151,7 +151,7 @@ impl Budgeted {
     /// From the attitude `start` at the first sample, for readings of a `sensor`.
     ///
     /// # Errors
-    /// As [`Strapdown::new`](super::Strapdown::new); deviations that are negative or not finite.
+    /// As [`Strapdown::new`](super::Strapdown::new); deviations that are negative, or 1e154 and more.
     pub fn new(
         kind: Kind,
         rule: Rule,

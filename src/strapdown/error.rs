@@ -65,7 +65,7 @@ pub enum StrapdownError {
     #[error("no samples: an attitude needs at least one")]
     Empty,
     /// A standard deviation of the sensor is not usable.
-    #[error("{name} of the sensor is {}; a standard deviation is a finite number of at least 0", Shown(*value))]
+    #[error("{name} of the sensor is {}; a standard deviation is at least 0 and below 1e154", Shown(*value))]
     Sensor {
         /// Which one.
         name: &'static str,

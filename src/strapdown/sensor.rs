@@ -65,7 +65,8 @@ impl Sensor {
             ("the scale error", self.scale),
             ("the error of the stamps", self.stamps),
         ];
-        match all.into_iter().find(|(_, value)| !(value.is_finite() && *value >= 0.0)) {
+        // a larger one has a square that no double holds, and covariances that are no numbers
+        match all.into_iter().find(|(_, value)| !(0.0..1e154).contains(value)) {
             Some((name, value)) => Err(StrapdownError::Sensor { name, value }),
             None => Ok(()),
         }
