@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
-use polhode::record::{Segment, Spike};
+use polhode::record::{Record, Segment, Spike};
 use polhode::strapdown::{Kind, StrapdownError};
 use polhode::units::RateUnit;
 use polhode_files::error::{Error, tell, warn};
@@ -72,7 +72,13 @@ struct Found {
     spikes: usize,
     in_bursts: usize,
     first_spike: Option<Spike>,
+    /// Intervals in which a row may be missing, and the end of the first, s.
+    long: usize,
+    first_long: Option<f64>,
 }
+
+/// An interval in which a row may be missing, in median intervals.
+const LONG: f64 = 1.5;
 
 impl KindArguments {
     /// Those of a file that can be integrated; what is lost or doubtful in it is refused by name. `whole`: all in one part.
@@ -164,6 +170,9 @@ impl Readings {
         };
         self.found.add(&part);
         self.check()?;
+        if self.kind != Kind::Rate {
+            self.found.add_long(&part.record, self.last.filter(|_| part.continues));
+        }
         // a long burst that is left out parts a segment as a gap does
         let segments = part.record.segments.iter().enumerate();
         let spans: Vec<(usize, f64, f64)> = segments.flat_map(|(k, segment)| stretches(k, segment)).collect();
@@ -232,6 +241,8 @@ impl Readings {
             new_readings_rate,
             spikes,
             in_bursts,
+            long,
+            first_long,
             ..
         } = self.found;
         tell_skipped(self.parts.skipped(), samples);
@@ -262,6 +273,13 @@ impl Readings {
             let bursts =
                 if in_bursts > 0 { format!(", {in_bursts} of them in bursts") } else { String::new() };
             warn(&format!("{spikes} spikes are left out{bursts}, the first at line {line} ({time} s)"));
+        }
+        if let Some(first) = first_long {
+            let first = short(first);
+            warn(&format!(
+                "{long} intervals are longer than {LONG} usual ones, the first ends at {first} s: the turn of a row that is missing there is \
+                 not in the attitude"
+            ));
         }
         if saturated > 0 {
             warn(&format!("{saturated} samples at the end of the sensor's range are left out"));
@@ -333,5 +351,23 @@ impl Found {
         self.spikes += part.spikes.len();
         self.in_bursts += Spike::bursts(&part.spikes).0;
         self.first_spike = self.first_spike.or(part.spikes.first().copied());
+    }
+
+    /// Counts long intervals, also that which begins `before` the record, s.
+    fn add_long(&mut self, record: &Record, before: Option<f64>) {
+        let pairs = record.segments.iter().flat_map(|segment| segment.times().windows(2));
+        let mut intervals: Vec<(f64, f64)> = pairs.map(|pair| (pair[1] - pair[0], pair[1])).collect();
+        let first = record.segments.first().and_then(|segment| segment.times().first());
+        intervals.extend(before.zip(first).map(|(before, first)| (first - before, *first)));
+        let mut lengths: Vec<f64> = intervals.iter().map(|(length, _)| *length).collect();
+        if lengths.is_empty() {
+            return;
+        }
+        let middle = lengths.len() / 2;
+        let usual = *lengths.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let long = || intervals.iter().filter(|(length, _)| *length > LONG * usual);
+        self.long += long().count();
+        let first = long().map(|(_, end)| *end).reduce(f64::min);
+        self.first_long = self.first_long.or(first);
     }
 }

@@ -152,6 +152,15 @@ fn the_kind_is_told_by_the_unit_or_asked_for() {
     );
     let degrees = answer(&silent, "--kind increment --rate-unit deg/s");
     assert!((angle(&degrees) - (49.0 * size).to_radians()).abs() < 1e-12);
+    // a row that is missing is a turn that is missing
+    assert!(!answer(&angles, "").err.contains("intervals are longer"));
+    let text = std::fs::read_to_string(&angles).unwrap();
+    let kept = text.split_inclusive('\n').filter(|line| !line.starts_with("2.0,"));
+    let missing = scratch.file("missing.csv", kept.collect::<String>());
+    let missing = answer(&missing, "--order 2 --samples 2");
+    assert!((angle(&missing) - 48.0 * size).abs() < 1e-12);
+    let says = "1 intervals are longer than 1.5 usual ones, the first ends at 2.1 s";
+    assert!(missing.err.contains(says), "{}", missing.err);
     // a fit needs rates
     refused_with(&["fit", &angles], &["column 2 (wx (rad))", "rad/s, deg/s, rpm"]);
 }
