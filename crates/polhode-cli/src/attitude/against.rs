@@ -37,8 +37,11 @@ impl Reference {
         let found = read(path, &ReadOptions::default())?;
         let name = visible(&path.display().to_string()).into_owned();
         let refused = |rule: &str, remedy: &str| Error::input("--against", &name, rule, remedy);
-        let since = found.read_as.since.clone();
+        let (since, contradiction) = (found.read_as.since.clone(), found.contradicted_time.clone());
         let (rows, reading) = attitudes(found, &name, refused)?;
+        if let Some(contradiction) = contradiction {
+            warn(&format!("{name}: {contradiction}"));
+        }
         Ok(Self {
             name,
             rows,

@@ -260,6 +260,13 @@ fn records_that_tell_no_attitude_are_refused_by_name() {
     refused(&format!("--against {later}"), &["--against", "no attitude at the first time", "--start"]);
     let open = scratch.file("open.csv", "t,q0,q1,q2,q3\n0,1,0,0,0\n1,1,0,0,0\n");
     refused(&format!("--against {open}"), &["--against", "where the scalar stands", "q_w, q_x, q_y, q_z"]);
+    // a second time that jumps
+    let clock = |k: i32| 0.1 * f64::from(k) + if k > 20 { 0.4 } else { 0.0 };
+    let rows: String = (0..40).map(|k| format!("{},{:.2},1,0,0,0\n", 100 * k, clock(k))).collect();
+    let clocks = scratch.file("clocks.csv", format!("time_ms,t,q_w,q_x,q_y,q_z\n{rows}"));
+    let answer = run(&with(&format!("--against {clocks}")));
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    assert!(answer.err.contains("clocks.csv: column 't' is a time too"), "{}", answer.err);
     let angles = scratch.file("angles.csv", "t,phi,theta,psi\n0,0,0,0\n1,0,0,1\n");
     refused(&format!("--against {angles}"), &["--against", "do not say their sequence"]);
 }
