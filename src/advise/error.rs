@@ -39,7 +39,8 @@ pub enum AdviseError {
     /// An energy error that no state in doubles has.
     #[error(
         "a relative energy error of {demand:.1e} is below rounding: that of the angular momentum to doubles alone changes the \
-         energy by up to {:.1e}; ask for more than that", f64::EPSILON
+         energy by up to {:.1e}; ask for more than that",
+        f64::EPSILON
     )]
     EnergyBelowRounding {
         /// What was asked for.

@@ -102,8 +102,9 @@ pub(super) fn trial(
     })
 }
 
-/// Between two looks the error may be larger than at them by about this factor.
-pub(super) const SAME_RUN: f64 = 1.5;
+/// Between two looks the error may be larger than at them by about this factor, and a method that chooses its steps takes others where states are
+/// asked for at other times: the largest factor that was seen, of some hundred demands, is 1.6.
+pub(super) const SAME_RUN: f64 = 2.0;
 
 impl Trial {
     /// The largest attitude error up to `until`: as the second half of the run grew, between √t and t. Where the energy `drifts`,

@@ -184,13 +184,13 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
         digits: writings.coarsest().digits,
         single_precision: writings.coarsest().single_precision,
     };
-    let noise = deviation
-        .as_ref()
-        .filter(|found| judgement == Judgement::Undecided && found.is_noisy)
-        .map(|found| Noise {
-            attitude: if record.attitude.is_some() { found.attitude_noise } else { 0.0 },
-            // attitudes alone have none of an angular velocity
-            rates: if has_omega { found.rates_noise * found.size } else { 0.0 },
+    let noise =
+        deviation.as_ref().filter(|found| judgement == Judgement::Undecided && found.is_noisy).map(|found| {
+            Noise {
+                attitude: if record.attitude.is_some() { found.attitude_noise } else { 0.0 },
+                // attitudes alone have none of an angular velocity
+                rates: if has_omega { found.rates_noise * found.size } else { 0.0 },
+            }
         });
     let missing = [
         (record.attitude.is_none(), Missing::Attitude),

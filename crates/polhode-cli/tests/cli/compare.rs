@@ -193,9 +193,8 @@ fn flips_of_a_trajectory_are_compared_with_those_of_the_true_motion_at_its_rows(
     let scratch = Scratch::new("compare-flips");
     let coarse = MOTION.replace("--until 20 --every 0.5", "--until 64 --every 16");
     let coarse = scratch.file("coarse.csv", output(&coarse));
-    let found = rows(&output(&format!(
-        "{TEXTBOOK} --until 64 --methods rk4 --steps 0.125 --trajectory {coarse}"
-    )));
+    let found =
+        rows(&output(&format!("{TEXTBOOK} --until 64 --methods rk4 --steps 0.125 --trajectory {coarse}")));
     // eight flips, of which four intervals show four at most
     assert_eq!(cell(&found[0], "flips_exact"), "8");
     assert!(number(&found[1], "flips") <= 4.0, "{found:?}");

@@ -226,9 +226,8 @@ fn exact(by: &Disturbances) -> (Vec<Track>, Model) {
 #[test]
 fn one_step_tells_each_small_number() {
     let small = 1e-5;
-    let alternatives = |(tracks, model): (Vec<Track>, Model)| {
-        Alternatives::new(&tracks, &model, NOISE).unwrap()
-    };
+    let alternatives =
+        |(tracks, model): (Vec<Track>, Model)| Alternatives::new(&tracks, &model, NOISE).unwrap();
     let read = |change: &dyn Fn(&mut Track)| {
         let (mut tracks, model) = exact(&Disturbances::default());
         tracks.iter_mut().for_each(change);

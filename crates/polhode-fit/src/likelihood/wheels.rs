@@ -603,7 +603,7 @@ mod tests {
         assert!(is_still && apart(&found) < 1e-8, "{:e}", apart(&found));
         // the wheels turn the momentum by 1.2 of theirs over the smallest moment
         let fastest = all.fastest(&all.tracks[0], &model(&weak));
-        let expected = 1.2 * Vector3::new(0.05, 0.1, -0.02).norm() / eigen(tensor(&weak.at.x)).0[0];
+        let expected: f64 = 1.2 * Vector3::new(0.05, 0.1, -0.02).norm() / eigen(tensor(&weak.at.x)).0[0];
         assert!((fastest / expected - 1.0).abs() < 1e-12);
     }
 }

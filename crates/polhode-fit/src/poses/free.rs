@@ -356,12 +356,8 @@ mod tests {
     fn rates_of_another_size_are_refused() {
         let rates = [Vector3::x(), Vector3::y(), Vector3::z()];
         let times = [0.0, 1.0, 2.0];
-        let node = |k: usize| Node {
-            time: times[k],
-            attitude: Quat::identity(),
-            rate: rates[k],
-            variance: 0.0,
-        };
+        let node =
+            |k: usize| Node { time: times[k], attitude: Quat::identity(), rate: rates[k], variance: 0.0 };
         let nodes = [(0..3).map(node).collect::<Vec<Node>>()];
         let stretches = [(times.to_vec(), vec![Quat::identity(); 3])];
         let of = |scale: f64| {

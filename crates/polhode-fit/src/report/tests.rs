@@ -532,6 +532,7 @@ fn no_grounds<'a>(record: &'a Record, weak: &'a WeakEstimate, e: &Estimate) -> G
         variance: noise * noise,
         open: None,
         contradicted: None,
+        filtered: None,
         suspect: None,
         refuted: None,
         as_well: None,
@@ -624,8 +625,11 @@ fn torques_are_warned_of_where_they_are_part_of_the_fit() {
 
     let parts = Halves { share: 0.25, first: [0.1, 0.4, 0.5], second: [0.2, 0.3, 0.5], chi2: 44.0 };
     let (error, size) = (ReadingError::Delays, 1e-3);
-    let beside = |found: bool| {
-        Grounds { found, as_well: Some((error, size, -1.0)), instead: Some((parts, -2.0)), ..quiet() }
+    let beside = |found: bool| Grounds {
+        found,
+        as_well: Some((error, size, -1.0)),
+        instead: Some((parts, -2.0)),
+        ..quiet()
     };
     assert!(warnings(&clean, &beside(true)).is_empty());
     e.torque.model = TorqueModel::Drag;
@@ -767,8 +771,7 @@ fn energies_of_attitudes_differ_beyond_their_slopes() {
     let settings = Settings::default().with_known(Known::TwiceEnergy(3.0));
     let found = |attitude: f64| {
         let (covariance, x) = (Form::zeros(), coordinates(&j));
-        let scale =
-            |known: Known, path: &[Stretch], of: Of| size(known, path, of, 2.0, &j, (attitude, 0.0));
+        let scale = |known: Known, path: &[Stretch], of: Of| size(known, path, of, 2.0, &j, (attitude, 0.0));
         absolute(&settings, &rates, TorqueModel::None, &j, &covariance, &x, scale)
     };
     // of ω·J ω the variance is 4 s |J ω|² over the number of samples, where that of a rate is s

@@ -4,8 +4,8 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_fit::{
-    Disturbances, FitError, Gyroscope, Record, SensorPriors, Settings, TorqueModel, TorqueNoise, Warning, fit,
-    simulate, simulate_with,
+    Disturbances, FitError, Gyroscope, Record, SensorPriors, Settings, TorqueModel, TorqueNoise, Warning,
+    fit, simulate, simulate_with,
 };
 
 use crate::measured::torques::motion;

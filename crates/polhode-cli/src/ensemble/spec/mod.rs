@@ -127,7 +127,8 @@ impl Spec {
             Some(listed) => {
                 for (table, key) in [(&top, "solution"), (&run, "seed")] {
                     if table.value(key).is_some() {
-                        let rule = "given beside members_file, so that nothing is drawn; leave one of them out";
+                        let rule =
+                            "given beside members_file, so that nothing is drawn; leave one of them out";
                         return Err(table.at(key, rule));
                     }
                 }
