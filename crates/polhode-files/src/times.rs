@@ -111,7 +111,7 @@ enum Layout {
         /// The first unit of time that a comment above the rows names in full.
         unit_said: Option<String>,
         /// Known with the first line.
-        place: Option<Place>,
+        place: Option<Box<Place>>,
     },
     /// Blocks that all have one time each: dumps of LAMMPS, messages of ROS.
     Blocks { table: Box<Table<'static>>, last: Option<f64> },
@@ -207,7 +207,7 @@ impl Times<'_> {
                 if let Some((rule, remedy)) = &place.refused {
                     return Err(lines.refused(Rule::Other(rule.clone())).with_remedy(remedy));
                 }
-                *found = Some(place);
+                *found = Some(Box::new(place));
                 if is_header {
                     continue;
                 }

@@ -437,8 +437,10 @@ mod tests {
         assert!(of(&plain.clone().with_noise(most * (1.0 - 1e-9))).is_ok());
         let too_much = most * (1.0 + 1e-9);
         match of(&plain.clone().with_noise(too_much)) {
-            Err(FitError::NoRotation { rms, noise }) => {
-                assert!(rms == UNIT && (noise / too_much - 1.0).abs() < 1e-12, "{rms} {noise}");
+            // of the readings themselves no noise hides the rotation
+            Err(FitError::StatedNoise { rms, stated, shown }) => {
+                assert!(rms == UNIT && (stated / too_much - 1.0).abs() < 1e-12, "{rms} {stated}");
+                assert!(shown < 1e-9, "{shown}");
             }
             found => panic!("{found:?}"),
         }

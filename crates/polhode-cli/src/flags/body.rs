@@ -1,5 +1,7 @@
 //! The flags that name a body, for every command that takes them.
 
+use std::sync::OnceLock;
+
 use clap::Args;
 use nalgebra::Matrix3;
 use polhode::body::{Body, Orbit, WheelAtStart};
@@ -24,6 +26,9 @@ pub(crate) struct BodyArguments {
     /// Body of the catalogue, see `polhode bodies`; or a file: JSON of `polhode inertia` or `polhode fit`, TOML of parts, URDF, MJCF or SDF, with :LINK where it has several; a mesh, STL, OBJ or PLY, of 1 kg/m^3, where no torque or wheel acts
     #[arg(long, value_name = "NAME|FILE[:LINK]")]
     body: Option<String>,
+    /// What --body names, read once: its file may have remarks.
+    #[arg(skip)]
+    read: OnceLock<Described>,
 }
 
 /// Six entries of a tensor, or nine.
@@ -39,6 +44,7 @@ fn tensor(text: &str) -> Result<Matrix3<f64>, String> {
 }
 
 /// A body with what is published of it.
+#[derive(Clone, Debug)]
 pub(crate) struct Described {
     pub(crate) inertia: Inertia,
     /// N m, body axes; zero of a body without a fixed point.
@@ -181,7 +187,11 @@ impl BodyArguments {
             let inertia = Inertia::from_tensor(tensor).map_err(|error| refused("--inertia", error))?;
             return Ok(Described::alone(inertia));
         }
-        described(self.body.as_deref().unwrap_or_default())
+        if let Some(read) = self.read.get() {
+            return Ok(read.clone());
+        }
+        let read = described(self.body.as_deref().unwrap_or_default())?;
+        Ok(self.read.get_or_init(|| read).clone())
     }
 }
 

@@ -72,7 +72,7 @@ mod tests {
     fn noise_of_the_rates_is_taken_off_the_squares() {
         let sizes = [1.0, 1.0, core::f64::consts::SQRT_2];
         let node = |k: usize| {
-            let rate = Vector3::ith(k / 2, sizes[k / 2] * if k % 2 == 0 { 1.0 } else { -1.0 });
+            let rate = Vector3::ith(k / 2, sizes[k / 2] * if k.is_multiple_of(2) { 1.0 } else { -1.0 });
             Node { time: 0.0, attitude: Quat::identity(), rate, variance: 0.5 }
         };
         let nodes: Vec<Node> = (0..6).map(node).collect();
