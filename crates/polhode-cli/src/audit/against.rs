@@ -115,7 +115,7 @@ impl Golden {
 
     /// How much of both was compared, where it is not all of this trajectory.
     pub(super) fn note(&self, record: &Trajectory, found: &Difference) -> Option<String> {
-        let open = if found.is_whole { "" } else { "; the verdict is open, as the others are not compared" };
+        let open = if found.is_whole { "" } else { "; without the others the record is not called right" };
         (found.rows < found.of).then(|| self.coverage(record, found.rows) + open)
     }
 
