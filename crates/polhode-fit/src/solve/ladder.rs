@@ -1,14 +1,18 @@
 //! The torque that a record asks for: one rung after the other, each on its gain of likelihood.
 
 use crate::columns::column::{Column, terms_of_all};
+use crate::columns::dissipation::dissipation;
+use crate::columns::effect::Class;
 use crate::columns::sets::torque_columns;
 use crate::models::MODELS;
 use crate::models::equations::Equations;
 use crate::models::reading_error::{ReadingError, Units};
 use crate::models::weighed::{Weighed, asked};
 use crate::physical::coordinates::Coordinates;
+use crate::physical::nearest::nearest;
 use crate::settings::torque::TorqueModel;
 use crate::signal::stretch::Stretch;
+use crate::solve::joint::Joint;
 use crate::solve::levels::{Choice, likeliest};
 use crate::solve::radius::{Ends, Failure, descended, estimate, is_long};
 use crate::solve::rounds::{Noise, Reached};
@@ -252,7 +256,7 @@ impl Ladder<'_> {
     }
 
     fn rung(&self, model: TorqueModel, weak: WeakEstimate) -> Rung {
-        let likelihood = likelihood(&weak, self.variance);
+        let likelihood = likelihood(&weak, self.variance) - loss_by_law(&weak, self.variance);
         Rung { model, weak, likelihood, equations: None }
     }
 
@@ -312,6 +316,14 @@ pub(crate) fn likelihood(weak: &WeakEstimate, variance: f64) -> f64 {
     if weak.parts.is_empty() { f64::NEG_INFINITY } else { -0.5 * sum }
 }
 
+/// Loss of log-likelihood by that the tensor is one of a body and that drag takes energy: half the square of the distance to the nearest
+/// such unknowns. A torque that explains the record as none of a body would explains nothing.
+fn loss_by_law(weak: &WeakEstimate, variance: f64) -> f64 {
+    let kept = |column: &Column| matches!(column.class(), Class::Drag | Class::Input);
+    let nearest = |joint: Joint| nearest(&joint.told, &[], &dissipation(&weak.columns, &joint.kept)).ok();
+    Joint::new(weak, kept, variance.sqrt()).and_then(nearest).map_or(0.0, |one| 0.5 * one.pull * one.pull)
+}
+
 /// Whether the residuals of an estimate without torque noise ask for some.
 fn has_torque_noise(stretches: &[Stretch], weak: &WeakEstimate, variance: f64) -> bool {
     let free = weak.dof().max(1) as f64 / weak.rows.max(1) as f64;
@@ -335,4 +347,40 @@ fn may_be_drag3(drag: &Rung, variance: f64) -> bool {
     let more = count(TorqueModel::Drag3).saturating_sub(count(drag.model));
     let both = [TorqueModel::Drag3, drag.model];
     !drag.weak.has_settled() || gain_of(drag, &both, variance) > HOPE * threshold(more)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::columns::column::Unknowns;
+    use crate::physical::coordinates::{Form, coordinates};
+    use nalgebra::{Matrix3, Vector3};
+
+    /// A largest share of 0.7 is 0.2 above what a body has, and the nearest body takes a tenth of it to each of the others: 0.06 in squares.
+    #[test]
+    fn a_tensor_of_no_body_costs_half_the_squares_of_its_distance() {
+        let of = |shares: [f64; 3]| {
+            let at =
+                Unknowns { x: coordinates(&Matrix3::from_diagonal(&Vector3::from(shares))), c: Vec::new() };
+            let (radius, root) = (1.0, Form::identity() * 100.0);
+            let (stacked, parts) = (None, Vec::new());
+            let columns = Vec::new();
+            let weak = WeakEstimate {
+                radius,
+                columns,
+                at,
+                moved: 0.0,
+                root,
+                stacked,
+                doubt: Form::zeros(),
+                squares: 0.0,
+                rows: 20,
+                parts,
+            };
+            loss_by_law(&weak, 0.25)
+        };
+        assert_eq!(of([0.2, 0.35, 0.45]), 0.0);
+        let loss = of([0.05, 0.25, 0.7]);
+        assert!((loss / (0.5 * 0.06 * 1e4 / 0.25) - 1.0).abs() < 1e-9, "{loss}");
+    }
 }
