@@ -205,6 +205,8 @@ thresholds! {
         RESIDUALS: f64 = 1.2, "misfit that is worth a warning", UNMEASURED;
         HALVES: f64 = 25.744_831_959_040_53,
             "chi squared of 5 degrees of freedom with a chance of 1e-4: two parts of a record contradict each other", DERIVED;
+        SEEN: f64 = 7.848_145_897_662_035,
+            "deviations of the difference of two parts by which a tensor changes that HALVES misses with a chance of 1e-3", DERIVED;
         CUTS: usize = 8, "parts of a record at whose borders it is cut in two", UNMEASURED;
         OPEN: f64 = 1e-12,
             "singular value over the largest, below which it is rounding and a part of the record leaves the number open", DERIVED;

@@ -176,6 +176,13 @@ impl Estimate {
         self.found.sigma_mirror.map(|sigmas| array(py, sigmas.to_vec(), &[3])).transpose()
     }
 
+    /// The change of each principal moment midway, as a share of the trace, up to which it may go unseen in this record; `None` where its halves
+    /// are not compared.
+    #[getter]
+    fn unseen_change<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
+        self.found.unseen_change.map(|most| array(py, most.to_vec(), &[3])).transpose()
+    }
+
     /// The torque that the fit reckons with: a dict by coefficient of `value`, `sigma`, `unit`, `prior`.
     #[getter]
     fn torque<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

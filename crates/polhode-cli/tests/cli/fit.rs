@@ -112,11 +112,15 @@ fn what_is_simulated_is_found_again() {
     let rows = output(&format!("fit {record}"));
     assert!(rows.starts_with("quantity,value,sigma,unit\nprincipal_1,0.178"), "{rows}");
     // (1, 2, 2.6)/5.6 with the ratios of Euler's equations negated
-    for part in ["\nunexplained,", "\nmirror_principal_1,0.13", "\nmirror_principal_3,0.459"] {
+    for part in
+        ["\nunexplained,", "\nmirror_principal_1,0.13", "\nmirror_principal_3,0.459", "\nunseen_change_3,"]
+    {
         assert!(rows.contains(part), "{part}: {rows}");
     }
     let text = output(&format!("fit {record} --format table"));
-    assert!(text.contains("deviation over the Cramer-Rao bound: 1.0"), "{text}");
+    for part in ["deviation over the Cramer-Rao bound: 1.0", "changes midway may go unseen: I1 by up to"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
     // two windows of the one file, and a drawing
     let svg = scratch.0.join("residuals.svg");
     let line = format!("fit {record} --window 1:0,12 --window 15,30 --residuals {}", svg.display());

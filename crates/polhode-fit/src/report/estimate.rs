@@ -178,6 +178,10 @@ pub struct Estimate {
     pub mirror: Option<InertiaShape>,
     /// Standard deviations of its principal moments, ascending.
     pub sigma_mirror: Option<[f64; 3]>,
+    /// The change of each principal moment midway, as a share of the trace, up to which it may go unseen in this record, by its noise as it was fitted:
+    /// a larger one brings [`Warning::Halves`] in 999 of 1,000 records. `None` where the halves are not compared, as by a likelihood on the exact motion,
+    /// or one of them leaves the tensor open.
+    pub unseen_change: Option<[f64; 3]>,
     /// Samples that were left out because they stand out of their neighbours.
     pub spikes: Vec<Spike>,
     /// Residuals by segment.

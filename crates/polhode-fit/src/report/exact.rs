@@ -174,6 +174,7 @@ pub(crate) fn report(
         attitudes: has_attitudes.then(|| attitudes(repeated, settings, free, told, &information)),
         mirror: if has_attitudes { None } else { shape_of(&mirrored(&shape.tensor())).ok() },
         sigma_mirror: (!has_attitudes).then(|| mirror_sigmas(&answer.x, &on_face)),
+        unseen_change: None,
         spikes: Vec::new(),
         residuals,
         warnings: Vec::new(),

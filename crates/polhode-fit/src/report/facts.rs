@@ -27,7 +27,7 @@ use crate::report::mirror::{mirror_sigmas, mirrored};
 use crate::report::model::{as_well, models, reading_errors};
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary};
 use crate::report::nuisances::nuisances;
-use crate::report::parts::{Scatter, instead};
+use crate::report::parts::{Scatter, instead, unseen};
 use crate::report::sensor::{Suspect, refuted};
 use crate::report::systematic::systematic;
 use crate::report::torque_free::{InvariantTrend, Whiteness, trends};
@@ -160,6 +160,7 @@ impl Facts<'_> {
             unexplained: motion.and_then(|motion| motion.unexplained(&j)),
             mirror: if self.input.is_none() { shape_of(&mirrored(&j)).ok() } else { None },
             sigma_mirror: self.input.is_none().then(|| mirror_sigmas(&nearest.x, &on_face)),
+            unseen_change: unseen(weak, excess, &v),
             spikes: self.spikes.clone(),
             residuals,
             warnings: Vec::new(),

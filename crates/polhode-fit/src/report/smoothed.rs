@@ -165,6 +165,7 @@ pub(crate) fn report(
         attitudes: Some(attitudes),
         mirror: None,
         sigma_mirror: None,
+        unseen_change: None,
         spikes: Vec::new(),
         residuals,
         warnings: Vec::new(),

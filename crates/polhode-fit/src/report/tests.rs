@@ -37,7 +37,7 @@ use crate::simulate::{Disturbances, Gyroscope, simulate_with};
 use crate::solve::weak_estimate::WeakEstimate;
 use crate::thresholds::noise::SURE;
 use crate::thresholds::poses::DOUBTFUL;
-use crate::thresholds::warnings::{APART, AS_WELL, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, UNEXPLAINED};
+use crate::thresholds::warnings::{APART, AS_WELL, FAR, FEW, NOISY, RESIDUALS, SEEN, UNCERTAIN, UNEXPLAINED};
 use crate::units::Others;
 use crate::units::product::UnitProduct;
 use crate::verdict::driven::check_driven;
@@ -756,6 +756,19 @@ fn parts_of_a_record_are_all_of_its_equations() {
     }
     assert!(joined == all);
     assert!(rows_between(&weak, [0.5, 0.5]).concat().is_empty());
+}
+
+/// Halves that tell the same differ by four times the covariance of the whole: a change may go unseen up to twice as many of its deviations.
+#[test]
+fn a_change_midway_may_go_unseen_up_to_twice_its_deviations() {
+    let (times, read) = rates(&Disturbances::default(), 1e-3, 500, &mut Random::new(5));
+    let one = || Record::from_samples(&times, &read).unwrap();
+    let settings = Settings::default().with_torque(TorqueModel::None).with_radius(1.0);
+    let settings = settings.with_torque_noise(TorqueNoise::None).with_check_units(false);
+    let e = fit(&one().join(one()), &settings).unwrap();
+    for (unseen, sigma) in e.unseen_change.unwrap().into_iter().zip(e.sigma_principal) {
+        assert!((unseen / (2.0 * SEEN * sigma) - 1.0).abs() < 1e-6, "{unseen:e} {sigma:e}");
+    }
 }
 
 /// The energy of a segment is known as the slope of a straight line through its turns, with the variance 12 σ²/T² of a rate: two energies that are

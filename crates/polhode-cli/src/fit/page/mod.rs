@@ -11,8 +11,8 @@ use super::as_read::AsRead;
 use super::flights::Spans;
 use super::report::{
     ENTRIES, Facts, MODELS, SURE, Segments, Sources, about_models, attitudes, component, digits, error_sizes,
-    four_digits, in_bursts, mirror, models, sensor_lines, sizes, systematic, two_places, unexplained, unused,
-    with_error,
+    four_digits, in_bursts, mirror, models, sensor_lines, sizes, systematic, two_places, unexplained, unseen,
+    unused, with_error,
 };
 
 /// The page of an estimate from the files `names`.
@@ -129,7 +129,7 @@ fn answer(e: &Estimate, as_read: &AsRead) -> Vec<Block> {
     );
     parts.push(Block::Paragraph(format!("{record}.")));
     parts.extend(read(as_read));
-    let facts = [unexplained(e), mirror(e)].into_iter().flatten();
+    let facts = [unexplained(e), mirror(e), Some(unseen(e))].into_iter().flatten();
     parts.extend(facts.map(|fact| Block::Paragraph(format!("{}.", capital(&fact)))));
     if let Some(prior) = e.prior {
         parts.push(Block::Paragraph(format!(

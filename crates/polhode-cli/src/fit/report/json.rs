@@ -102,6 +102,7 @@ fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
             "name": line.name, "size": line.size, "unit": line.unit,
             "principal": line.principal, "ratios": line.ratios,
         })).collect::<Vec<_>>(),
+        "unseen_change": e.unseen_change,
         "rho": e.per_segment.iter().map(|s| s.torque_noise * s.weight).sum::<f64>(),
         "per_segment": e.per_segment.iter().map(|s| json!({
             "segment": s.segment + 1, "samples": s.samples, "noise_sigma": s.noise_sigma,

@@ -297,6 +297,17 @@ pub(super) fn mirror(e: &Estimate) -> Option<String> {
     Some(format!("if the axes are left-handed (--axes): I1 : I2 : I3 = {a} : {b} : {c}"))
 }
 
+/// Up to which size a change of the tensor midway may go unseen, in one sentence.
+pub(super) fn unseen(e: &Estimate) -> String {
+    match e.unseen_change {
+        Some([a, b, c]) => format!(
+            "a body that changes midway may go unseen: I1 by up to {a:.1e}, I2 by {b:.1e} and I3 by {c:.1e} of the trace; near an end of the \
+             record by more"
+        ),
+        None => "halves of the record are not compared: a body that changes midway shows only in what its motion leaves".into(),
+    }
+}
+
 /// The models of the torque, and errors of the record without one, beside each other: name, gain of log-likelihood, share, both ratios with their deviations, what free
 /// motion leaves, what they make of a segment that is held out.
 pub(super) fn models(e: &Estimate) -> Vec<[String; 7]> {

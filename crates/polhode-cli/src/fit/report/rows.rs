@@ -81,5 +81,10 @@ pub(super) fn rows(e: &Estimate) -> Table {
             table.push(row![format!("mirror_principal_{}", k + 1), moment, sigma, OF_TRACE]);
         }
     }
+    if let Some(unseen) = e.unseen_change {
+        for (k, most) in unseen.into_iter().enumerate() {
+            table.push(row![format!("unseen_change_{}", k + 1), most, None::<f64>, OF_TRACE]);
+        }
+    }
     table
 }

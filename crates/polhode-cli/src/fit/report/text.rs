@@ -6,8 +6,8 @@ use polhode_pages::screen::wrapped;
 
 use super::{
     ENTRIES, MODELS, SURE, Segments, Sources, WIDTH, about_models, attitudes, component, digits, error_sizes,
-    four_digits, in_bursts, mirror, models, sizes, systematic, two_places, unexplained, unused, with_error,
-    wrapped_lines,
+    four_digits, in_bursts, mirror, models, sizes, systematic, two_places, unexplained, unseen, unused,
+    with_error, wrapped_lines,
 };
 
 /// The answer first, then what it rests on.
@@ -78,6 +78,7 @@ fn answer(e: &Estimate) -> Vec<String> {
     lines.push(wrapped(&record, WIDTH, 2));
     lines.extend(unexplained(e));
     lines.extend(mirror(e).map(|line| line.replacen(": I1", ":\n  I1", 1)));
+    lines.push(wrapped(&unseen(e), WIDTH, 2));
     lines
 }
 
