@@ -402,6 +402,18 @@ fn searches_that_cannot_be_are_refused() {
 }
 
 #[test]
+fn what_happened_before_a_run_diverged_is_kept() {
+    let body = racket();
+    let fast = start(&body, [30.0, 20.0, -10.0]);
+    let mut run = Run::new(&method("explicit-euler").unwrap(), &body, &fast, 1.0).unwrap();
+    let (found, ended) = run.events_so_far(&[Event::rate_above(&body, 100.0).unwrap()], 1000.0, 1.0);
+    let Err(RunError::Diverged { last }) = &ended else { panic!("{ended:?}") };
+    assert_eq!(found.found.len(), 1);
+    let rate = body.omega_body(&found.found[0].state).norm();
+    assert!((rate - 100.0).abs() < 1e-9 && found.found[0].time < last.time, "{rate}");
+}
+
+#[test]
 fn a_top_is_searched_like_a_free_body() {
     let top =
         Body::heavy(Inertia::from_moments([1.0, 1.0, 0.25]).unwrap(), Vector3::new(0.0, 0.0, 2.0)).unwrap();

@@ -156,13 +156,14 @@ impl<'a> Search<'a> {
         let look = self.look(time, state)?;
         let Some(before) = self.last.replace(look.clone()) else { return Ok(()) };
         let first = self.found.len();
-        for n in 0..self.events.len() {
+        // what was found before an error is put in order too
+        let ended = (0..self.events.len()).try_for_each(|n| {
             let span = (look.time - before.time).to_f64();
             let (a, b) =
                 (Place { u: 0.0, value: before.values[n] }, Place { u: span, value: look.values[n] });
             self.changes[n] = self.changes[n].max((b.value - a.value).abs());
-            self.between(n, before.time, (a, b), DIVISIONS, states)?;
-        }
+            self.between(n, before.time, (a, b), DIVISIONS, states)
+        });
         self.found[first..].sort_by(|a, b| {
             let order = a.time.partial_cmp(&b.time).unwrap_or(core::cmp::Ordering::Equal);
             order.then(self.events[a.event].stops.cmp(&self.events[b.event].stops))
@@ -170,7 +171,7 @@ impl<'a> Search<'a> {
         if let Some(end) = (first..self.found.len()).find(|&n| self.events[self.found[n].event].stops) {
             self.found.truncate(end + 1);
         }
-        Ok(())
+        ended
     }
 
     fn look(&mut self, time: Dd, state: &State) -> Result<Look, EventError> {

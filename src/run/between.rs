@@ -47,7 +47,7 @@ impl Run {
         }
         let point = self.here().behind(self, later)?;
         let sample = self.sample_of(point, later);
-        if sample.is_finite() { Ok(sample) } else { Err(RunError::OutOfRange { steps }) }
+        if sample.is_finite() { Ok(sample) } else { Err(RunError::OutOfRange { steps, time: t }) }
     }
 
     /// The step that the run has come to, to look behind it.

@@ -57,12 +57,14 @@ pub enum RunError {
     },
     /// The state is finite in the solver frame, and in the units of the body time, momentum or energy are not.
     #[error(
-        "after {steps} steps time, momentum or energy leave the range of a double in the units of the body; take a smaller \
-         step, or change the units"
+        "after {steps} steps, t = {} s, time, momentum or energy leave the range of a double in the units of the body; take a \
+         smaller step, or change the units", Shown(*time)
     )]
     OutOfRange {
         /// Steps taken.
         steps: u64,
+        /// The time then, s.
+        time: f64,
     },
     /// A force is not a finite number.
     #[error(

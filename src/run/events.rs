@@ -45,6 +45,23 @@ impl Run {
     /// As [`advance_to`](Self::advance_to); a run that goes backwards; an end that the run has passed; a spacing that is not
     /// positive; a function that is no number or jumps.
     pub fn events(&mut self, events: &[Event], end: f64, spacing: f64) -> Result<Events, RunError> {
+        let (found, ended) = self.events_so_far(events, end, spacing);
+        ended.map(|()| found)
+    }
+
+    /// As [`events`](Self::events): what happened, also before the error that ended the run, and that error.
+    pub fn events_so_far(
+        &mut self,
+        events: &[Event],
+        end: f64,
+        spacing: f64,
+    ) -> (Events, Result<(), RunError>) {
+        let mut search = Search::new(events, None);
+        let ended = self.search(&mut search, end, spacing);
+        (search.finish(spacing.min(self.clock.step)), ended)
+    }
+
+    fn search(&mut self, search: &mut Search<'_>, end: f64, spacing: f64) -> Result<(), RunError> {
         let step = self.clock.step;
         let begun = self.clock.at(self.point.steps());
         if step < 0.0 {
@@ -60,16 +77,15 @@ impl Run {
             Place::Behind { steps, later, .. } => (steps, later),
         };
         let looks = (step / spacing).ceil().max(1.0);
-        let mut search = Search::new(events, None);
         search.begin::<RunError>(begun.dd(), &self.body.leave(&self.reading))?;
         while !search.has_ended() && (self.point.steps() < last || rest != Dd::ZERO) {
             let whole = self.point.steps() < last;
-            self.look_over(&mut search, if whole { None } else { Some(rest) }, looks)?;
+            self.look_over(search, if whole { None } else { Some(rest) }, looks)?;
             if !whole {
                 break;
             }
         }
-        Ok(search.finish(spacing.min(step)))
+        Ok(())
     }
 
     /// Looks over the next step, or the `rest` of it, and takes it unless the search ends in it.

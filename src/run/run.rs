@@ -287,7 +287,7 @@ impl Run {
         if sample.is_finite() {
             Ok(Box::new(sample))
         } else {
-            Err(RunError::OutOfRange { steps: sample.steps })
+            Err(RunError::OutOfRange { steps: sample.steps, time: sample.time.hi() })
         }
     }
 

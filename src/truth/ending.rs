@@ -32,7 +32,7 @@ impl Ending {
         let elapsed = error.last().map_or(0.0, |last| last.elapsed.hi());
         match error {
             RunError::Diverged { .. } => Some(Ending::Diverged(elapsed)),
-            RunError::OutOfRange { steps } => Some(Ending::Diverged(step * *steps as f64)),
+            RunError::OutOfRange { steps, .. } => Some(Ending::Diverged(step * *steps as f64)),
             RunError::Unsolved { .. } => Some(Ending::Unsolved(elapsed)),
             RunError::Stuck { .. } => Some(Ending::Stuck(elapsed)),
             _ => None,

@@ -126,7 +126,7 @@ impl Course<'_> {
         for (time, &steps) in self.steps.iter().enumerate() {
             let sample = run.advance_to(steps).map_err(|error| (time, error.into()))?;
             if !observer.see(self, number, time, &sample.point, rows) {
-                return Err((time, RunError::OutOfRange { steps }.into()));
+                return Err((time, RunError::OutOfRange { steps, time: sample.time.hi() }.into()));
             }
         }
         Ok(())

@@ -29,7 +29,7 @@ impl Propagate {
         });
         let events: Vec<Event> = events.collect::<Result<_, Error>>()?;
         let spacing = self.spacing(body, &start, to - from)?;
-        let (found, sense) = if self.method == "exact" {
+        let (found, ended) = if self.method == "exact" {
             let motion = self.exact_motion(body, start)?;
             let found = motion.events(&events, 0.0, to - from, spacing);
             (found.map_err(|error| Error::Input(format!("{}: {error}", flag_of(&error))))?, Ok(()))
@@ -38,8 +38,11 @@ impl Propagate {
         };
         let origin = if self.method == "exact" { from } else { 0.0 };
         self.write_events(body, &columns, &found, Dd::from(origin))?;
-        self.tell_of_events(&found, [from, to]);
-        sense
+        self.tell_of_events(&found);
+        if found.found.is_empty() && ended.is_ok() {
+            tell("note", &format!("nothing of it happens from {from} s to {to} s"));
+        }
+        ended
     }
 
     /// Time between looks, s.
@@ -56,7 +59,7 @@ impl Propagate {
         }
     }
 
-    /// What happens along the run, and whether its numbers are those of a rotation to the end.
+    /// What happens along the run, and whether it comes to its end by numbers of a rotation.
     fn along_run(
         &self,
         body: &Body,
@@ -74,11 +77,25 @@ impl Propagate {
         let clock = Clock { start: from, step: h };
         cost::announce(method.as_ref(), body, start.to_f64(), clock, steps as u64);
         let mut run = run_of(method.as_ref(), body, start, clock)?.watching(Watch::Never);
-        let found = run.events(events, to, spacing).map_err(|error| match error {
+        let (found, ended) = run.events_so_far(events, to, spacing);
+        let ended = match ended.map_err(|error| self.search_ended(error)) {
+            Ok(()) => self.check_sense(&run.sample()),
+            Err(error @ Error::Input(_)) if found.found.is_empty() => return Err(error),
+            failed => failed,
+        };
+        Ok((found, ended))
+    }
+
+    /// Why a search along a run cannot go on.
+    fn search_ended(&self, error: RunError) -> Error {
+        match error {
+            // it is of the motion that the run found
+            RunError::Event(error @ (EventError::NotANumber { .. } | EventError::NotContinuous { .. })) => {
+                Error::Failed(format!("--method {}: {error}", self.method))
+            }
             RunError::Event(error) => Error::Input(format!("{}: {error}", flag_of(&error))),
             error => self.ended(error),
-        })?;
-        Ok((found, self.check_sense(&run.sample())))
+        }
     }
 
     /// A row of each, whose times count from `origin`.
@@ -105,12 +122,9 @@ impl Propagate {
     }
 
     /// What the rows do not say.
-    fn tell_of_events(&self, found: &Events, [from, to]: [f64; 2]) {
+    fn tell_of_events(&self, found: &Events) {
         for one in found.found.iter().filter(|one| one.crossing == Crossing::AtStart) {
             tell("note", &format!("{}: is the case at the start already", self.events[one.event].text()));
-        }
-        if found.found.is_empty() {
-            tell("note", &format!("nothing of it happens from {from} s to {to} s"));
         }
         for &event in &found.may_miss {
             tell(

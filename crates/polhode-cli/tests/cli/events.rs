@@ -3,7 +3,7 @@
 use polhode::nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use polhode::{FreeMotion, Inertia};
 
-use crate::harness::{output, refused, run};
+use crate::harness::{Scratch, output, refused, run};
 
 const BODY: &str = "propagate --moments 1,2,3 --omega 0.001,1,0 --format csv";
 const CONE: &str = "angle(body z, space x) < 40deg";
@@ -123,6 +123,29 @@ fn events_of_numbers_that_are_no_rotation_fail() {
     }
     let coarse = run(&format!("{BODY} --until 10 {event} --method rk4 --step 2"));
     assert!(coarse.err.contains("--step: '2': turns the body by 2.0 rad per step"), "{}", coarse.err);
+}
+
+/// A step of Euler's method stretches |m| by √(1 + (h ω)²), ω that across m: the rate passes 100 rad/s, and the run leaves the
+/// range of a double.
+#[test]
+fn events_before_a_run_diverges_are_rows() {
+    let wild = "propagate --moments 1,2,3 --omega 30,20,-10 --until 1000 --method explicit-euler --step 1";
+    let answer = run(&format!("{wild} --event 'rate > 100rad/s' --format csv"));
+    assert_eq!((answer.code, answer.out.lines().count()), (1, 2), "{answer:?}");
+    let row = cells(answer.out.lines().last().unwrap());
+    assert!(row[0] == "rate > 100rad/s" && number(&row[1]) > 0.0, "{row:?}");
+    for part in ["error: --method explicit-euler: ", " steps, t = ", "take a smaller step"] {
+        assert!(answer.err.contains(part), "{}", answer.err);
+    }
+    let folder = Scratch::new("events-so-far");
+    let file = folder.file("events.csv", "");
+    let written = run(&format!("{wild} --event 'rate > 100rad/s' --out {file}"));
+    assert_eq!((written.code, written.out.as_str()), (1, ""), "{written:?}");
+    assert_eq!(std::fs::read_to_string(file).unwrap(), answer.out);
+    // of a motion that ends early nobody says what does not happen in it
+    let none = run(&format!("{wild} --event 'rate < 1e-9rad/s' --format csv"));
+    assert_eq!((none.code, none.out.lines().count()), (1, 1), "{none:?}");
+    assert!(!none.err.contains("nothing of it happens"), "{}", none.err);
 }
 
 #[test]
