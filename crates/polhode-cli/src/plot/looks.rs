@@ -8,6 +8,7 @@ use polhode::num::Dd;
 use polhode::observe::{Errors, Monitor};
 use polhode::rotation::Quat;
 use polhode::run::{Run, RunError, Schedule, ScheduleError};
+use polhode::truth::Ending;
 use polhode_files::error::Error;
 use polhode_files::text::short;
 
@@ -79,7 +80,15 @@ pub(crate) struct Looks {
     /// turn over.
     pub(crate) flips: Option<Flips>,
     /// Why the run ended early, where it did.
-    pub(crate) ended: Option<RunError>,
+    pub(crate) ended: Option<Ended>,
+}
+
+/// The end of a run that came no further, or of whose numbers no more are those of a rotation.
+pub(crate) struct Ended {
+    /// In words.
+    pub(crate) why: String,
+    /// Since the start; `None` where it is the fault of a force.
+    pub(crate) ending: Option<Ending>,
 }
 
 /// Flips of a motion.
@@ -254,10 +263,14 @@ impl Looks {
             let sample = match sample {
                 Ok(sample) => sample,
                 Err(error) => {
-                    self.ended = Some(error);
+                    self.ended = Some(Ended { why: error.to_string(), ending: Ending::of(&error, step) });
                     break;
                 }
             };
+            if let Some(why) = sample.nonsense() {
+                self.ended = Some(Ended { why, ending: Some(Ending::Diverged(sample.elapsed.hi())) });
+                break;
+            }
             let t = sample.time.hi();
             if let (Some(axis), Some(found), Some(count)) = (&middle, &mut flips, sample.flips) {
                 let along = sample.state.momentum().dot(axis);

@@ -18,7 +18,7 @@ use polhode_pages::output::Output;
 
 use crate::flags::motion::MotionArguments;
 use crate::flags::times::span_until;
-use looks::{Course, Flags, Looks};
+use looks::{Course, Ended, Flags, Looks};
 
 const USAGE: &str = "polhode plot <KIND> <BODY> [START] --until <T> --out <FILE> [OPTIONS]
   BODY:  --moments <I1,I2,I3> | --inertia <Ixx,...,Iyz> | --body <NAME>
@@ -95,8 +95,8 @@ fn angle(text: &str) -> Result<[f64; 2], String> {
 /// Pictures of a motion: polhode, herpolhode, angular velocity, angles, trace, Poinsot's construction, conserved quantities
 ///
 /// The ending of FILE names the format: .svg, .png, and .html for the animation of poinsot, a page that needs no network. With
-/// --method exact the curves are those of the closed form, else those of the method; the title names body, forces, angular velocity
-/// at the start, method and step.
+/// --method exact the curves are those of the closed form, else those of the method, as long as its numbers are those of a rotation
+/// (else exit code 1); the title names body, forces, angular velocity at the start, method and step.
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Plot {
@@ -231,8 +231,8 @@ impl Plot {
             write(file, picture, &self.page(&looks)?)?;
         }
         match looks.ended {
-            Some(error) => {
-                Err(Error::Failed(format!("--method {}: {error}; what came before is drawn", self.method)))
+            Some(Ended { why, .. }) => {
+                Err(Error::Failed(format!("--method {}: {why}; what came before is drawn", self.method)))
             }
             None => Ok(()),
         }

@@ -9,7 +9,7 @@ use polhode::method::{Claimed, method};
 use polhode::num::Dd;
 use polhode::observe::Monitor;
 use polhode::rotation::{Quat, Vec3, rotation_angle};
-use polhode::truth::{Ending, LOST};
+use polhode::truth::LOST;
 use polhode_files::error::{Error, warn};
 use polhode_files::numbers::{positive, turn};
 use polhode_files::text::{short, visible};
@@ -20,7 +20,7 @@ use super::{MOST, Show, keeps_energy};
 use crate::compare::trajectory::Trajectory;
 use crate::methods::unknown;
 use crate::plot::animation::track;
-use crate::plot::looks::{Course, Flags, Looks, middle_axis};
+use crate::plot::looks::{Course, Ended, Flags, Looks, middle_axis};
 
 /// What `--against` names.
 pub(super) enum Against {
@@ -158,18 +158,15 @@ impl Show {
             found.name,
             found.times.len()
         );
-        if let Some(error) = &looks.ended {
-            let Some(ending) = Ending::of(error, step.unwrap_or(0.0)) else {
-                return Err(Error::Failed(format!("--against: '{typed}': {error}")));
+        if let Some(Ended { why, ending }) = &looks.ended {
+            let Some(ending) = ending.map(|ending| ending.by_clock(course.start_time)) else {
+                return Err(Error::Failed(format!("--against: '{typed}': {why}")));
             };
-            let words = ending.by_clock(course.start_time).to_string();
+            let words = ending.to_string();
             let last = found.times.last().copied().unwrap_or(course.start_time);
             note = format!("{note} It {words} s, and is shown up to then.");
             warn(&format!("--against: '{typed}': {words} s; it is shown up to then"));
-            found.ending = Some((
-                ending.by_clock(course.start_time).time().unwrap_or(last).max(last),
-                ending.word().into(),
-            ));
+            found.ending = Some((ending.time().unwrap_or(last).max(last), ending.word().into()));
         }
         Ok(Rival { track: found, note, has_quaternions: false })
     }

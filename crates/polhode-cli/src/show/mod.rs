@@ -23,7 +23,7 @@ use crate::flags::motion::MotionArguments;
 use crate::flags::table::{Order, TableArguments};
 use crate::flags::times::span_until;
 use crate::plot::animation::track;
-use crate::plot::looks::{Course, FEWEST, Flags, Looks};
+use crate::plot::looks::{Course, Ended, FEWEST, Flags, Looks};
 use crate::plot::poinsot::Construction;
 use crate::plot::{Picture, title};
 use against::Against;
@@ -142,8 +142,8 @@ impl Show {
         let scene = self.scene(&course, &looks, look, &against)?;
         file.write_whole(&scene.page()?)?;
         match looks.ended {
-            Some(error) => {
-                Err(Error::Failed(format!("--method {}: {error}; what came before is shown", course.method)))
+            Some(Ended { why, .. }) => {
+                Err(Error::Failed(format!("--method {}: {why}; what came before is shown", course.method)))
             }
             None => Ok(()),
         }

@@ -217,6 +217,40 @@ fn a_title_names_the_tolerance_of_a_method_that_chooses_its_steps() {
     assert!(title.contains("dop853, tolerance 1e-9") && !title.contains("h = "), "{title}");
 }
 
+/// Of a steady turn by h ω a step Euler's method stretches the quaternion by √(1 + (h ω/2)²), here by more than a half in 14 of 20
+/// steps: what follows is no attitude.
+#[test]
+fn what_is_no_rotation_is_not_drawn() {
+    let scratch = Scratch::new("plot-stretched");
+    let euler =
+        "--moments 1,2,3 --omega 0.001,1,0 --until 10 --method explicit-euler --step 0.5 --out p.html";
+    for (command, told) in
+        [("plot poinsot", "what came before is drawn"), ("show", "what came before is shown")]
+    {
+        let answer = polhode(&words(&format!("{command} {euler}")), &scratch.0);
+        assert_eq!(answer.code, 1, "{command}: {}", answer.err);
+        for part in
+            ["error: --method explicit-euler: at 7.0 s the quaternion of the attitude has the norm", told]
+        {
+            assert!(answer.err.contains(part), "{command}: {}", answer.err);
+        }
+        let times = Page::read(&scratch.0.join("p.html")).body().times;
+        assert_eq!((times.len(), times.last()), (14, Some(&6.5)), "{command}");
+    }
+    // a picture too
+    let svg =
+        "trace --moments 1,2,3 --omega 0.001,1,0 --until 10 --method explicit-euler --step 0.5 --out p.svg";
+    assert_eq!(polhode(&words(&format!("plot {svg}")), &scratch.0).code, 1);
+    // and a body beside another
+    let beside =
+        "show --moments 1,2,3 --omega 0.001,1,0 --until 10 --against explicit-euler:0.5 --out p.html";
+    let answer = polhode(&words(beside), &scratch.0);
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    let page = Page::read(&scratch.0.join("p.html"));
+    assert_eq!(page.rival(0).written["ending"], serde_json::json!([7.0, "diverged"]));
+    assert_eq!(page.rival(0).times.last(), Some(&6.5));
+}
+
 #[test]
 fn what_cannot_be_drawn_is_refused_with_what_can() {
     let with =
