@@ -15,6 +15,7 @@ pub(super) fn page(plot: &Plot, looks: &Looks) -> Result<String, Error> {
         plot.title("Poinsot's construction", looks) + &looks.remark(),
         track(&plot.course(), looks, found.upright),
     );
+    scene.body.energy_changes = looks.energy_changes.clone();
     scene.ellipsoid = Some(found.ellipsoid(looks));
     scene.shown = Shown { omega: true, momentum: true, polhode: true, herpolhode: true };
     scene.notes.push(
@@ -22,8 +23,13 @@ pub(super) fn page(plot: &Plot, looks: &Looks) -> Result<String, Error> {
          contact draws the polhode on the ellipsoid and the herpolhode on the plane."
             .into(),
     );
+    scene.notes.extend((!looks.keeps_ellipsoid()).then(|| OF_THE_TIME.to_owned()));
     scene.page()
 }
+
+/// What is to be known of an ellipsoid that changes.
+pub(crate) const OF_THE_TIME: &str = "The energy changes: the ellipsoid and the plane are those of the energy at the time that is shown, and \
+     the polhode is scaled with them.";
 
 /// The motion as a page shows it, `upright` turning the axes of space to those of the page.
 pub(crate) fn track(course: &Course, looks: &Looks, upright: UnitQuaternion<f64>) -> Track {
@@ -48,7 +54,8 @@ impl Construction {
     pub(crate) fn ellipsoid(&self, looks: &Looks) -> Ellipsoid {
         let first = looks.times.first().copied().unwrap_or(0.0);
         let last = looks.times.last().copied().unwrap_or(first);
-        let period = looks.free().and_then(|motion| motion.character().ok()?.polhode_period);
+        let closed = looks.free().filter(|_| looks.keeps_ellipsoid());
+        let period = closed.and_then(|motion| motion.character().ok()?.polhode_period);
         let frame = UnitQuaternion::from_rotation_matrix(&self.frame);
         Ellipsoid {
             semi_axes: self.semi_axes,

@@ -25,6 +25,8 @@ const PER_RADIAN: f64 = 12.0;
 const MOST_FLIPS: u64 = 400;
 /// Beyond this turn between two points, rad, they are not joined.
 const RESOLVED: f64 = 0.8;
+/// A smaller relative change of the energy is not seen.
+const SEEN: f64 = 1e-3;
 
 /// What is followed: a motion, by which method, for how long.
 #[derive(Clone, Copy)]
@@ -167,6 +169,11 @@ impl Looks {
     /// Whether lines between the looks follow the motion.
     pub(crate) fn is_resolved(&self) -> bool {
         self.turn() <= RESOLVED
+    }
+
+    /// Whether the ellipsoid ω·Iω = 2T stays what it is at the start, to the eye.
+    pub(crate) fn keeps_ellipsoid(&self) -> bool {
+        self.energy_changes.iter().all(|change| change.abs() < SEEN)
     }
 
     fn push(&mut self, t: f64, state: State, omega: Vector3<f64>, errors: Errors) {

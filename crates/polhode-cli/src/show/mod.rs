@@ -22,7 +22,7 @@ use crate::flags::attitude::{check_used, of_order};
 use crate::flags::motion::MotionArguments;
 use crate::flags::table::{Order, TableArguments};
 use crate::flags::times::span_until;
-use crate::plot::animation::track;
+use crate::plot::animation::{OF_THE_TIME, track};
 use crate::plot::looks::{Course, Ended, FEWEST, Flags, Looks};
 use crate::plot::poinsot::Construction;
 use crate::plot::{Picture, title};
@@ -212,6 +212,7 @@ impl Show {
             scene
                 .notes
                 .push("L points down, as in Poinsot's construction: the invariable plane lies below.".into());
+            scene.notes.extend((!looks.keeps_ellipsoid()).then(|| OF_THE_TIME.to_owned()));
         }
         if scene.body.times.len() > 2 {
             scene.notes.push(format!(

@@ -193,6 +193,31 @@ fn every_body_of_the_catalogue_has_a_page() {
     golden("show.txt", &found);
 }
 
+/// Inner friction takes energy and leaves L: ω lies on the ellipsoid whose axes have shrunk by √(T/T₀), and in the plane at the
+/// distance 2T/|L| from its centre. The page draws both of the time that it shows, and all of the polhode, which is not closed.
+#[test]
+fn the_ellipsoid_shrinks_with_the_energy() {
+    let scratch = Scratch::new("show-friction");
+    let flags = "--moments 1,2,3 --omega 1,0.05,0.3 --method dissipating:0.01 --step 0.05 --until 60";
+    let page = silently(&scratch, flags);
+    let (track, ellipsoid) = (page.body(), &page.scene["ellipsoid"]);
+    let number = |value: &serde_json::Value| value.as_f64().unwrap();
+    let shares: Vec<f64> = track.energy_changes.iter().map(|change| 1.0 + change).collect();
+    assert!(shares.len() == track.times.len() && shares.windows(2).all(|pair| pair[1] <= pair[0]));
+    assert!(shares.last().unwrap() < &0.9, "{:?}", shares.last());
+    for ((omega, turn), share) in track.omegas.iter().zip(&track.attitudes).zip(&shares) {
+        let along = |k: usize| omega[k] / number(&ellipsoid["semi_axes"][k]);
+        let on: f64 = (0..3).map(|k| along(k) * along(k)).sum();
+        assert!((on / share - 1.0).abs() < 1e-3, "{on} {share}");
+        assert!(((turn * omega).z + number(&ellipsoid["distance"]) * share).abs() < 1e-3, "{share}");
+    }
+    assert!((number(&ellipsoid["round"]) - 60.0).abs() < 1e-9);
+    let note = "ellipsoid and the plane are those of the energy at the time that is shown";
+    assert!(page.notes().contains(note), "{}", page.notes());
+    let free = silently(&scratch, FREE);
+    assert!(number(&free.scene["ellipsoid"]["round"]) < 20.0 && !free.notes().contains(note));
+}
+
 /// Half-edges of the box around the vertices, the largest 1.
 fn extents(page: &Page) -> [f64; 3] {
     let (vertices, _) = page.shape();

@@ -54,7 +54,8 @@ pub struct Scene {
     pub shown: Shown,
 }
 
-/// The ellipsoid ω·Iω = 2T and the invariable plane, across −z of the page.
+/// The ellipsoid ω·Iω = 2T and the invariable plane, across −z of the page, at the start: the page scales both to the energy of the
+/// time that it shows, by [`Track::energy_changes`] of the body.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Ellipsoid {
     /// Along the principal axes, rad/s.
@@ -65,7 +66,7 @@ pub struct Ellipsoid {
     pub distance: f64,
     /// Half the side of the plane that is drawn, rad/s.
     pub plane: f64,
-    /// The polhode is drawn up to this time: one round of it, s.
+    /// The polhode is drawn up to this time: one round of it where it is closed, s.
     pub round: f64,
 }
 

@@ -60,6 +60,8 @@ const calm = window.matchMedia("(prefers-reduced-motion: reduce)");
 let time = 0, pace = scene.pace, running = !calm.matches, before = null, stale = true;
 let azimuth = 0.6, elevation = 0.3, zoom = 1;
 const shown = name => by(name).checked;
+// The energy at a place of the motion, as a share of that of the start.
+const energy = place => body.energy_changes.length ? Math.max(1e-9, 1 + mixed(body.energy_changes, place, 1)[0]) : 1;
 
 function style() {
   const found = getComputedStyle(document.documentElement);
@@ -88,20 +90,22 @@ function prepare() {
   shaft = draw.line([[0, 0, 0], [0, 0, 1]]);
   let largest = 0;
   for (let k = 0; k < body.omegas.length; k += 3) largest = Math.max(largest, Math.hypot(...body.omegas.subarray(k, k + 3)));
-  scale = FULL / (ellipsoid ? Math.max(...ellipsoid.semi_axes) : largest || 1);
+  const most = body.energy_changes.reduce((most, change) => Math.max(most, 1 + change), 1);
+  scale = FULL / (ellipsoid ? Math.sqrt(most) * Math.max(...ellipsoid.semi_axes) : largest || 1);
   if (!ellipsoid) return;
   sheet = draw.solid([-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0], [0, 1, 2, 0, 2, 3]);
   rim = draw.line([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0], [-1, -1, 0]]);
   const circle = f => Array.from({ length: 97 }, (_, k) => f(Math.cos(k * Math.PI / 48), Math.sin(k * Math.PI / 48)));
   rings = [circle((c, s) => [0, c, s]), circle((c, s) => [c, 0, s]), circle((c, s) => [c, s, 0])].map(draw.line);
-  // a line of a few thousand points shows as much as all of them
-  const round = placeOf(body, ellipsoid.round)[0] + 1, step = Math.max(1, Math.floor(round / 1500));
+  // a line of some thousand points shows as much as all of them
+  const round = placeOf(body, ellipsoid.round)[0] + 1, step = Math.max(1, Math.ceil(round / 12000));
   const once = Array.from({ length: Math.floor(round / step) + 1 }, (_, k) => Math.min(k * step, body.times.count - 1));
-  polhode = draw.line(once.map(k => times(row(body.omegas, k, 3), scale * 1.004)));
+  // on the ellipsoid of the start
+  polhode = draw.line(once.map(k => times(row(body.omegas, k, 3), scale * 1.004 / Math.sqrt(energy([k, 0])))));
   herpolhodeStep = Math.max(1, Math.ceil(body.times.count / 12000));
   const path = Array.from({ length: Math.floor((body.times.count - 1) / herpolhodeStep) + 1 }, (_, k) => {
     const at = turned(row(body.attitudes, k * herpolhodeStep, 4), row(body.omegas, k * herpolhodeStep, 3));
-    return [at[0] * scale, at[1] * scale, -ellipsoid.distance * scale];
+    return [at[0] * scale, at[1] * scale, 0];
   });
   herpolhode = draw.line(path);
 }
@@ -138,17 +142,18 @@ function paint() {
 
   const omega = body.omegas.length ? mixed(body.omegas, place, 3) : [0, 0, 0];
   if (rolls || stands) {
-    const frame = product(q, ellipsoid.frame), stretch = times(ellipsoid.semi_axes, scale);
+    const share = energy(place), root = Math.sqrt(share);
+    const frame = product(q, ellipsoid.frame), stretch = times(ellipsoid.semi_axes, root * scale);
     if (plane) {
-      const low = plus(offset, [0, 0, -ellipsoid.distance * scale]), wide = ellipsoid.plane * scale;
+      const low = plus(offset, [0, 0, -ellipsoid.distance * share * scale]), wide = ellipsoid.plane * scale;
       // from below the bodies are seen through the plane
       draw.drawSolid(sheet, { q: [1, 0, 0, 0], stretch: [wide, wide, 1], offset: low, colours: [ink.plane], opacity: 0.55, hides: false });
       draw.drawLine(rim, { stretch: [wide, wide, 1], offset: low, colour: ink.quiet, width: 1 });
-      draw.drawLine(herpolhode, { offset, colour: ink.herpolhode, width: 2, pieces: Math.ceil((place[0] + place[1]) / herpolhodeStep) });
+      draw.drawLine(herpolhode, { offset: low, colour: ink.herpolhode, width: 2, pieces: Math.ceil((place[0] + place[1]) / herpolhodeStep) });
     }
     draw.drawSolid(ball, { q: frame, stretch, offset, colours: [ink.ellipsoid], opacity: stands ? 0.7 : 0.25, hides: Boolean(stands) });
     for (const ring of rings) draw.drawLine(ring, { q: frame, stretch: times(stretch, 1.002), offset, colour: ink.quiet, width: 1, faint: 0.2 });
-    if (shown("polhode")) draw.drawLine(polhode, { q, offset, colour: ink.polhode, width: 2.5 });
+    if (shown("polhode")) draw.drawLine(polhode, { q, stretch: [root, root, root], offset, colour: ink.polhode, width: 2.5 });
   }
   rivals.forEach((rival, k) => {
     if (!shape || !isThere(rival, t)) return;
