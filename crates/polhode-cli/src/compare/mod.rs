@@ -74,8 +74,9 @@ pub(crate) struct Compare {
     start_time: f64,
     /// A trajectory of another program as one more row: any file with an attitude that `polhode audit` reads, in the convention
     /// that its rows show; with an angular velocity also its errors of energy and momentum and its flips, at the rows of the
-    /// file: flips are counted from row to row, of the file and of the true motion, and rows far apart miss flips of both. The
-    /// motion of another body is refused; repeatable
+    /// file: flips are counted from row to row, of the file and of the true motion, beyond what the rates are off, and rows far
+    /// apart miss flips of both. Rates that contradict the attitudes are told, and are its status. The motion of another body is
+    /// refused; repeatable
     #[arg(long, value_name = "FILE.csv", help_heading = "Methods")]
     trajectory: Vec<PathBuf>,
     #[command(flatten)]

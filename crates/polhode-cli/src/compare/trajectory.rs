@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use nalgebra::Vector3;
 use polhode::audit::{
     Attitudes, Convention, Direction, Frame, Judgement, QuaternionOrder, Question, Reading, Suspect,
     Trajectory as Columns, audit,
@@ -19,6 +20,14 @@ use polhode_files::trajectory;
 
 use crate::flags::attitude::check_matrices;
 use crate::flags::table::TableArguments;
+
+/// A smaller share of |ω| along the middle axis is rounding.
+pub(super) const ROUNDING: f64 = 1e-11;
+/// Nor is a flip what the errors of rates explain, up to this share of |ω|.
+const EXPLAINED: f64 = 0.1;
+/// Rates that are off by a larger share of |ω| contradict attitudes that are off by less than what they turn, over this number.
+const CONTRADICTS: f64 = 0.01;
+const CLEARLY: f64 = 10.0;
 
 /// Rows of a file.
 pub(crate) struct Trajectory {
@@ -45,11 +54,13 @@ pub(super) struct Off {
     /// When that is, s since the start; `None` where the true motion is not known so far.
     pub(super) at: Option<f64>,
     pub(super) ending: Ending,
-    /// Where it has angular velocities: largest errors of the invariants at its rows, and the changes of sign of the momentum along
-    /// the middle axis from row to row.
+    /// Where it has angular velocities: largest errors of the invariants at its rows, and the changes of sign of ω along the middle
+    /// axis from row to row, which are larger than rounding and the errors of the rates.
     pub(super) invariants: Option<(Errors, u64)>,
     /// The same changes of sign of the true motion, from row to row: rows far apart miss flips of both.
     pub(super) true_flips: Option<u64>,
+    /// What its rates are off those of the true motion, root mean square as a share of these, where its attitudes contradict it.
+    pub(super) contradiction: Option<f64>,
 }
 
 impl Trajectory {
@@ -141,15 +152,23 @@ impl Trajectory {
         // as of methods: of a top or a gyrostat in closed form none are counted
         let is_counted =
             invariants.is_some() && matches!(truth.closed_form(), None | Some(ExactMotion::Free(_)));
-        let mut followed = is_counted.then(|| monitor(truth, start_time));
+        let body = truth.body();
+        let axis = body.inertia().principal_axes() * Vector3::y();
+        let along = |omega: Vector3<f64>| omega.dot(&axis) / omega.norm();
+        let begun = along(body.omega_of(&truth.start()));
+        let mut followed = is_counted.then(|| vec![begun]);
         let mut off = Off {
             attitude_error: 0.0,
             largest: 0.0,
             at: None,
             ending: Ending::Held,
-            invariants,
+            invariants: None,
             true_flips: None,
+            contradiction: None,
         };
+        // squares of what rates are off, and of the true ones; the angle that these turn by, rad
+        let [mut apart, mut squared, mut turned]: [f64; 3] = [0.0; 3];
+        let mut before: Option<f64> = None;
         for row in &self.rows {
             let elapsed = Dd::from(row.t) - Dd::from(start_time);
             if elapsed.hi() > known {
@@ -157,15 +176,22 @@ impl Trajectory {
                 break;
             }
             let exact = truth.point_at(elapsed).map_err(unexpected)?;
-            if let Some(monitor) = &mut followed {
-                monitor.observe(&[exact.to_f64()]);
+            let rate = body.omega_of(&exact);
+            if let Some(followed) = &mut followed {
+                followed.push(along(rate));
             }
             if off.ending != Ending::Held {
                 continue;
             }
+            if let Some(omega) = row.omega_body {
+                apart += (Vector3::from(omega) - rate).norm_squared();
+                squared += rate.norm_squared();
+                turned += rate.norm() * before.map_or(0.0, |before| row.t - before);
+                before = Some(row.t);
+            }
             let attitude = Quat::from_components(row.attitude);
             let state = State { attitude, momentum_body: Vec3::zero() };
-            let point = truth.body().enter(&state).map_err(unexpected)?;
+            let point = body.enter(&state).map_err(unexpected)?;
             off.attitude_error = attitude_error(point.attitude, exact.attitude);
             (off.largest, off.at) = (off.largest.max(off.attitude_error), Some(elapsed.hi()));
             if off.attitude_error > LOST {
@@ -175,7 +201,17 @@ impl Trajectory {
                 }
             }
         }
-        off.true_flips = followed.map(|monitor| monitor.flips());
+        let rates_off = (apart / squared).sqrt();
+        let band = (2.0 * rates_off).clamp(ROUNDING, EXPLAINED);
+        off.true_flips = followed.map(|seen| changes_of_sign(seen, band));
+        off.invariants = invariants.map(|worst| {
+            let rates = self.rows.iter().filter_map(|row| row.omega_body);
+            let seen = rates.map(|omega| along(omega.into()));
+            (worst, changes_of_sign(core::iter::once(begun).chain(seen), band))
+        });
+        // what rates are off, attitudes are off too before long
+        let contradict = rates_off > CONTRADICTS && rates_off * turned.min(1.0) > CLEARLY * off.largest;
+        off.contradiction = Some(rates_off).filter(|_| contradict && off.ending == Ending::Held);
         if let (None, Some(first)) = (off.at, self.rows.first()) {
             let rule = format!("the true motion is known until t = {}", short(start_time + known));
             return Err(Error::input(&self.name, &short(first.t), &rule, "give rows before that"));
@@ -183,9 +219,10 @@ impl Trajectory {
         Ok(off)
     }
 
-    /// Invariants and flips at the rows, against the start of the truth.
-    fn invariants(&self, truth: &Truth, start_time: f64) -> Result<Option<(Errors, u64)>, Error> {
-        let mut monitor = monitor(truth, start_time);
+    /// Invariants at the rows, against the start of the truth.
+    fn invariants(&self, truth: &Truth, start_time: f64) -> Result<Option<Errors>, Error> {
+        // rows are taken for points of the start: what is conserved depends on time through motors alone
+        let mut monitor = Monitor::new(truth.body(), Clock { start: start_time, step: 1.0 }, &truth.start());
         for row in &self.rows {
             let Some(omega) = row.omega_body else { return Ok(None) };
             let refused = |error| Error::Input(format!("{}: t = {}: {error}", self.name, short(row.t)));
@@ -197,13 +234,15 @@ impl Trajectory {
         if truth.body().wheels().iter().any(|wheel| wheel.motor().is_some()) {
             (worst.momentum_norm, worst.momentum_vector, worst.momentum_z) = (None, None, None);
         }
-        Ok(Some((worst, monitor.flips())))
+        Ok(Some(worst))
     }
 }
 
-/// Of rows, which are taken for points of the start: what is conserved depends on time through motors alone.
-fn monitor(truth: &Truth, start_time: f64) -> Monitor {
-    Monitor::new(truth.body(), Clock { start: start_time, step: 1.0 }, &truth.start())
+/// Changes of sign of numbers that leave the `band` about zero on both sides.
+fn changes_of_sign(numbers: impl IntoIterator<Item = f64>, band: f64) -> u64 {
+    let beyond = numbers.into_iter().filter(|x| x.abs() > band);
+    let positive: Vec<bool> = beyond.map(|x| x > 0.0).collect();
+    positive.windows(2).filter(|pair| pair[0] != pair[1]).count() as u64
 }
 
 /// A row as this library reads it.
@@ -264,4 +303,17 @@ fn reading(columns: &Columns, claims: Convention, body: &Body) -> Option<(Readin
         (own.quaternion, own.angles) = (best.quaternion, best.angles);
     }
     Some((own, is_other))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_stays_within_the_errors_of_rates_is_no_flip() {
+        let seen = [0.5, 1e-3, -1e-3, 1e-3, f64::NAN, -0.5, -1e-3, 0.2];
+        assert_eq!(changes_of_sign(seen, 2e-3), 2);
+        assert_eq!(changes_of_sign(seen, 1e-4), 4);
+        assert_eq!(changes_of_sign([1e-17, -1e-17], ROUNDING), 0);
+    }
 }

@@ -120,6 +120,18 @@ fn runs_that_lose_the_attitude_say_when() {
     }
 }
 
+/// A file of [`MOTION`] with other rates, by the number of the row.
+fn with_rates(text: &str, of: impl Fn(usize, [f64; 3]) -> [f64; 3]) -> String {
+    let row = |(k, line): (usize, &str)| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let rates = [5, 6, 7].map(|column| cells[column].parse().ok());
+        let [Some(x), Some(y), Some(z)] = rates else { return format!("{line}\n") };
+        let [x, y, z] = of(k, [x, y, z]);
+        format!("{},{x:e},{y:e},{z:e}\n", cells[..5].join(","))
+    };
+    text.lines().enumerate().map(row).collect()
+}
+
 #[test]
 fn a_trajectory_of_another_program_is_a_row() {
     let scratch = Scratch::new("compare-trajectory");
@@ -142,21 +154,21 @@ fn a_trajectory_of_another_program_is_a_row() {
 
     let flags = |file: &str| format!("{TEXTBOOK} --until 20 --methods rk4 --steps 0.5 --trajectory {file}");
     let bad = |name: &str, text: &str| scratch.file(name, text);
-    // half the angular velocity is a quarter of the energy, and half of L in the right direction
-    let half: Vec<String> = exact
-        .lines()
-        .enumerate()
-        .map(|(k, line)| {
-            let cells: Vec<&str> = line.split(',').collect();
-            let scaled =
-                |x: &str| if k == 0 { x.into() } else { (0.5 * x.parse::<f64>().unwrap()).to_string() };
-            let omega = cells[5..8].iter().map(|cell| scaled(cell));
-            cells[..5].iter().map(ToString::to_string).chain(omega).collect::<Vec<_>>().join(",")
-        })
-        .collect();
-    let found = rows(&output(&flags(&bad("half.csv", &half.join("\n")))));
-    assert!((number(&found[1], "energy_error") - 0.75).abs() < 1e-12);
-    assert!((number(&found[1], "momentum_vector_error") - 0.5).abs() < 1e-12);
+    // half the angular velocity is a quarter of the energy, and half of L in the right direction; of another sign it is twice L off:
+    // both contradict the attitudes
+    for (factor, [energy, momentum], told) in
+        [(0.5, [0.75, 0.5], "by 0.50 of their size"), (-1.0, [0.0, 2.0], "by 2.00 of their size")]
+    {
+        let text = with_rates(&exact, |_, rates| rates.map(|rate| factor * rate));
+        let answer = run(&flags(&bad("scaled.csv", &text)));
+        let row = &rows(&answer.out)[1];
+        assert!((number(row, "energy_error") - energy).abs() < 1e-12, "{row:?}");
+        assert!((number(row, "momentum_vector_error") - momentum).abs() < 1e-12, "{row:?}");
+        assert_eq!(cell(row, "status"), "rates contradict");
+        for part in ["scaled.csv: its angular velocities are off", told, "contradict each other"] {
+            assert!(answer.err.contains(part), "{part}: {}", answer.err);
+        }
+    }
     // without angular velocities there is the attitude alone
     let attitudes: Vec<String> =
         exact.lines().map(|line| line.split(',').take(5).collect::<Vec<_>>().join(",")).collect();
@@ -200,6 +212,21 @@ fn flips_of_a_trajectory_are_compared_with_those_of_the_true_motion_at_its_rows(
     assert!(number(&found[1], "flips") <= 4.0, "{found:?}");
     assert_eq!(cell(&found[1], "flips"), cell(&found[1], "flips_exact"));
     assert_eq!(cell(&found[1], "flips_right"), "right");
+}
+
+/// About a steady spin the component along the middle axis is rounding, whose sign tells nothing.
+#[test]
+fn rounding_about_a_steady_spin_is_no_flip() {
+    let scratch = Scratch::new("compare-steady");
+    let spin = |text: &str| text.replace("0.4,1,-0.3", "1e-17,1e-17,1");
+    let noisy =
+        with_rates(&output(&spin(MOTION)), |k, [x, _, z]| [x, if k % 2 == 0 { 1e-16 } else { -1e-16 }, z]);
+    let file = scratch.file("steady.csv", noisy);
+    let found = rows(&output(&spin(&format!("{TEXTBOOK} {BESIDE} {file}"))));
+    for row in &found {
+        let flips = ["flips", "flips_exact", "flips_right", "status"].map(|name| cell(row, name));
+        assert_eq!(flips, ["0", "0", "right", "ok"], "{row:?}");
+    }
 }
 
 #[test]
