@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use nalgebra::UnitQuaternion;
-use polhode::audit::{Reading, Trajectory};
+use polhode::audit::{Attitudes, Reading, Trajectory};
 use polhode::strapdown::Estimate;
 use polhode_files::error::{Error, tell, warn};
 use polhode_files::text::{rounded, visible};
@@ -15,6 +15,13 @@ use crate::reference::attitudes;
 /// Times agree within this share of the mean interval of the reference.
 const SAME_TIME: f64 = 1e-6;
 
+/// Of so many standard deviations of a component is the ball that holds 95 % of errors without a direction, χ² of three degrees of
+/// freedom.
+const RADIUS: f64 = 2.795;
+
+/// An attitude of the reference is off by so many of what its quaternions are off the norm 1, which their digits leave.
+const DIGITS: f64 = 10.0;
+
 /// A trajectory to compare with, and what was found.
 pub(super) struct Reference {
     pub(super) name: String,
@@ -24,10 +31,14 @@ pub(super) struct Reference {
     since: Option<String>,
     /// Whether a time of the record is one of its own.
     has_met: bool,
-    /// Attitudes that were to be compared, those of them at a time of the reference, and of these the ones whose error is inside the 95 % of its budget.
+    /// What its digits leave open, rad.
+    resolution: f64,
+    /// Attitudes that were to be compared, those of them at a time of the reference, and of these the ones whose error is inside the 95 %
+    /// of its budget, in its direction or by its size, and those beyond twice of it.
     asked: usize,
     compared: usize,
     inside: usize,
+    beyond: usize,
     largest: f64,
     at: f64,
 }
@@ -39,6 +50,12 @@ impl Reference {
         let refused = |rule: &str, remedy: &str| Error::input("--against", &name, rule, remedy);
         let (since, contradiction) = (found.read_as.since.clone(), found.contradicted_time.clone());
         let (rows, reading) = attitudes(found, &name, refused)?;
+        let off = |q: &[f64; 4]| (q.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs();
+        let resolution = match &rows.attitude {
+            Some(Attitudes::Quaternions(all)) => DIGITS * all.iter().map(off).fold(0.0, f64::max),
+            // of others it is not known
+            _ => f64::INFINITY,
+        };
         if let Some(contradiction) = contradiction {
             warn(&format!("{name}: {contradiction}"));
         }
@@ -48,9 +65,11 @@ impl Reference {
             reading,
             since,
             has_met: false,
+            resolution,
             asked: 0,
             compared: 0,
             inside: 0,
+            beyond: 0,
             largest: 0.0,
             at: 0.0,
         })
@@ -85,7 +104,11 @@ impl Reference {
         let truth = self.at(estimate.time)?;
         let angle = estimate.error(truth).norm();
         self.compared += 1;
-        self.inside += usize::from(estimate.holds(truth));
+        // of a budget that is little but truncation the ellipsoid is flat
+        let within = RADIUS * estimate.budget.sigma();
+        self.inside += usize::from(angle <= within || estimate.holds(truth));
+        let rounding = self.resolution + 8.0 * f64::EPSILON * self.asked as f64;
+        self.beyond += usize::from(angle > 2.0 * within + rounding);
         if angle > self.largest {
             (self.largest, self.at) = (angle, estimate.time);
         }
@@ -106,12 +129,30 @@ impl Reference {
         Err(Error::input("--against", &self.name, rule, remedy))
     }
 
+    /// Refuses attitudes of the record `name` most of which are beyond twice the 95 % of their budget: it is not their error.
+    pub(super) fn judge(&self, name: &str) -> Result<(), Error> {
+        if 2 * self.beyond <= self.compared {
+            return Ok(());
+        }
+        Err(Error::Failed(format!(
+            "{name}: {} contradicts the attitudes: {} of {} errors are beyond twice their 95 %",
+            self.name, self.beyond, self.compared
+        )))
+    }
+
     /// What the comparison found.
     pub(super) fn tell(&self) {
+        let verdict = if 2 * self.beyond > self.compared {
+            "the budget is contradicted"
+        } else if 2 * self.inside < self.compared {
+            "the budget is too small"
+        } else {
+            "the budget holds"
+        };
         tell(
             "note",
             &format!(
-                "{}: {} rows compared, read as {}; largest error {:.1e} rad at t = {} s, {} inside their 95 %",
+                "{}: {} rows compared, read as {}; largest error {:.1e} rad at t = {} s, {} inside their 95 %: {verdict}",
                 self.name,
                 self.compared,
                 self.reading

@@ -46,7 +46,7 @@ const EXAMPLES: &str = "Examples:
 /// series. Order and number of samples are chosen from the record, with its noise. Columns: t, q_w, q_x, q_y, q_z (body to space,
 /// scalar first), attitude_sigma (standard deviation of each component of the attitude error by all causes, rad), truncation
 /// (estimated error of the method, rad). The start counts as exact. Exit code 1: the attitude is lost, its standard deviation is
-/// above 1 rad.
+/// above 1 rad; or most of the attitudes are off those of --against by more than twice the 95 % of their budget.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Attitude {
@@ -146,7 +146,7 @@ impl Attitude {
         }
         rows.finish()?;
         match lost {
-            None => Ok(()),
+            None => reference.map_or(Ok(()), |reference| reference.judge(readings.name())),
             Some(t) => Err(Error::Failed(format!(
                 "{}: the attitude is lost: from t = {} s on its standard deviation is above {} rad",
                 readings.name(),

@@ -265,7 +265,8 @@ fn records_that_tell_no_attitude_are_refused_by_name() {
     let rows: String = (0..40).map(|k| format!("{},{:.2},1,0,0,0\n", 100 * k, clock(k))).collect();
     let clocks = scratch.file("clocks.csv", format!("time_ms,t,q_w,q_x,q_y,q_z\n{rows}"));
     let answer = run(&with(&format!("--against {clocks}")));
-    assert_eq!(answer.code, 0, "{}", answer.err);
+    // of a body that turned the attitude is not the identity
+    assert_eq!(answer.code, 1, "{}", answer.err);
     assert!(answer.err.contains("clocks.csv: column 't' is a time too"), "{}", answer.err);
     let angles = scratch.file("angles.csv", "t,phi,theta,psi\n0,0,0,0\n1,0,0,1\n");
     refused(&format!("--against {angles}"), &["--against", "do not say their sequence"]);
@@ -280,6 +281,42 @@ fn an_attitude_that_is_lost_ends_with_exit_code_1() {
     assert!(answer.err.contains("the attitude is lost: from t = "), "{}", answer.err);
 }
 
+/// The exact attitudes are inside the budget of readings without noise, which is the truncation alone, and those of readings in
+/// another unit are not.
+#[test]
+fn the_summary_says_whether_the_budget_holds() {
+    let scratch = Scratch::new("attitude-verdict");
+    let record = simulated(&scratch, "rates.csv", "--every 0.05");
+    let reference = exact(&scratch, 0.05);
+    let line = format!("attitude {record} --kind rate --against {reference}");
+    for flags in ["", "--noise 0", "--rule hold"] {
+        let answer = run(&format!("{line} {flags}"));
+        assert_eq!(answer.code, 0, "{}", answer.err);
+        let says = "401 inside their 95 %: the budget holds";
+        assert!(answer.err.contains(says) && !answer.err.contains("beyond"), "{flags}: {}", answer.err);
+    }
+    let degrees = run(&format!("{line} --rate-unit deg/s"));
+    assert_eq!((degrees.code, degrees.out.lines().count()), (1, 402), "{}", degrees.err);
+    for part in
+        ["the budget is contradicted", "contradicts the attitudes: ", " of 401 errors are beyond twice"]
+    {
+        assert!(degrees.err.contains(part), "{part}: {}", degrees.err);
+    }
+    // digits that the reference does not have contradict nothing
+    let text = std::fs::read_to_string(&reference).unwrap();
+    let rounded = text.lines().enumerate().map(|(k, line)| {
+        let cells = line.split(',').map(|cell| match cell.parse::<f64>() {
+            Ok(number) if k > 0 => format!("{number:.4}"),
+            _ => cell.to_owned(),
+        });
+        cells.collect::<Vec<_>>().join(",") + "\n"
+    });
+    let rounded = scratch.file("rounded.csv", rounded.collect::<String>());
+    let answer = run(&format!("attitude {record} --kind rate --against {rounded}"));
+    assert_eq!(answer.code, 0, "{}", answer.err);
+    assert!(answer.err.contains("the budget is too small"), "{}", answer.err);
+}
+
 #[test]
 fn times_that_count_from_the_first_rows_of_two_files_are_compared_where_these_are_of_one_time() {
     let scratch = Scratch::new("attitude-since");
@@ -288,7 +325,7 @@ fn times_that_count_from_the_first_rows_of_two_files_are_compared_where_these_ar
         let rows: String = (0..20).map(|k| format!("{},{row}\n", first + 100 * k)).collect();
         scratch.file(name, format!("{head}\n{rows}"))
     };
-    let record = file("record.csv", first, "t,wx (rad/s),wy (rad/s),wz (rad/s)", "0.01,0.02,0.03");
+    let record = file("record.csv", first, "t,wx (rad/s),wy (rad/s),wz (rad/s)", "0,0,0");
     let reference = |name: &str, first: u64| file(name, first, "t,q_w,q_x,q_y,q_z", "1,0,0,0");
     let one = run(&format!("attitude {record} --kind rate --against {}", reference("one.csv", first)));
     assert!(one.code == 0 && one.err.contains("20 rows compared"), "{one:?}");
