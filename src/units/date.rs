@@ -98,6 +98,20 @@ impl Date {
         Ok(((reading(self) - reading(other)) * DAY).to_f64())
     }
 
+    /// The moment of a Unix time, which counts from 1970 without leap seconds, in UTC.
+    ///
+    /// ```
+    /// use polhode::units::Date;
+    /// let moment = Date::of_unix(1_700_000_000, 250_000_000);
+    /// assert_eq!(moment.seconds_since(&"2023-11-14T22:13:20Z".parse()?)?, 0.25);
+    /// # Ok::<(), polhode::Error>(())
+    /// ```
+    pub fn of_unix(seconds: i64, nanoseconds: u32) -> Date {
+        let seconds = Dd::of(seconds as f64) + Dd::of(f64::from(nanoseconds)) / Dd::of(1e9);
+        let instant = Dd::of(EPOCH_1970) + seconds / Dd::of(DAY);
+        Date { instant, scale: None }.in_scale(Some(TimeScale::Utc))
+    }
+
     /// The time scale that was written behind it.
     #[must_use]
     pub fn scale(&self) -> Option<TimeScale> {

@@ -3,7 +3,7 @@
 use core::fmt;
 
 use polhode::num::Shown;
-use polhode::units::RateUnit;
+use polhode::units::{Date, RateUnit};
 
 use crate::table::SignedAxes;
 
@@ -75,6 +75,8 @@ pub struct ReadAs {
     pub times: (String, NamedBy),
     /// The first time as it is written, where the others count from it: dates, counts since 1970, whole seconds beside nanoseconds.
     pub since: Option<String>,
+    /// The moment of that time; whole seconds beside nanoseconds are taken to count from 1970.
+    pub begins: Option<Date>,
     /// Samples a second, by the median time between two of them; `None` of a single sample.
     pub sample_rate: Option<f64>,
     /// Which columns were taken as the rates about x, y and z, where a setting says so.

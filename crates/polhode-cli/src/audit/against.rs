@@ -11,7 +11,7 @@ use polhode_files::error::Error;
 use polhode_files::numbers::numbers;
 use polhode_files::text::{rounded, visible};
 use polhode_files::trajectory::read;
-use polhode_files::{NamedBy, ReadOptions};
+use polhode_files::{ReadAs, ReadOptions};
 use polhode_pages::verdict::Difference;
 
 use crate::reference::attitudes;
@@ -21,6 +21,7 @@ pub(super) struct Golden {
     name: String,
     rows: Trajectory,
     reading: Reading,
+    read_as: ReadAs,
     pub(super) body: Body,
     /// What of its file is not read, in words.
     pub(super) remark: Option<String>,
@@ -56,17 +57,33 @@ impl Golden {
                 .map_err(|error| refused("# weight-moment", &error.to_string()))?,
             _ => Body::free(inertia),
         };
-        let (times, named_by) = &found.read_as.times;
-        if *named_by == NamedBy::Values || times == "s and ns" {
-            let rule = format!("its times are {times}, of which the time since the first row is read");
-            return Err(refused("", &rule));
-        }
+        let read_as = found.read_as.clone();
         let remark = found.remark().map(|remark| format!("{name}: {remark}"));
         let (rows, reading) = attitudes(found, &name, |rule, _| refused("", rule))?;
         if rows.times.len() < 2 {
             return Err(refused("", "has one row"));
         }
-        Ok(Self { name, rows, reading, body, remark })
+        Ok(Self { name, rows, reading, read_as, body, remark })
+    }
+
+    /// Brings its times to the clock of the `record`, where they count from a moment of their own.
+    pub(super) fn align(&mut self, record: &ReadAs) -> Result<(), Error> {
+        let Some(begins) = self.read_as.begins else { return Ok(()) };
+        let refused = |rule: &str| {
+            let remedy =
+                "write the times of both as dates or counts since 1970, or of both in s since one moment";
+            Error::input(&self.name, "", rule, remedy)
+        };
+        let Some(other) = record.begins else {
+            let (times, since) = (&self.read_as.times.0, self.read_as.since.as_deref().unwrap_or_default());
+            return Err(refused(&format!(
+                "its times are {times}, which are read from the first row on, {}, and those of the record count from no such moment",
+                visible(since)
+            )));
+        };
+        let shift = begins.seconds_since(&other).map_err(|error| refused(&error.to_string()))?;
+        self.rows.times.iter_mut().for_each(|t| *t += shift);
+        Ok(())
     }
 
     /// The distance of `record`, read as the verdict has it.

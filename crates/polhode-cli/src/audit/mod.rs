@@ -150,7 +150,7 @@ impl Audit {
 
     /// The verdict on every body of the file.
     fn outcomes(&self, path: &Path, name: &str) -> Result<Vec<Outcome>, Error> {
-        let golden = self.against.as_deref().map(Golden::read).transpose()?;
+        let mut golden = self.against.as_deref().map(Golden::read).transpose()?;
         let mut wheels = Vec::new();
         let body = match (&golden, &self.body) {
             (Some(golden), _) => Some(self.forces.act_on(golden.body.clone(), None)?),
@@ -184,6 +184,9 @@ impl Audit {
         self.reading.check_order(body.is_some(), !wheels.is_empty())?;
         memory::check_files(&[path.to_path_buf()], 2)?;
         let mut found = trajectory::read(path, &self.reading.table())?;
+        if let Some(golden) = &mut golden {
+            golden.align(&found.read_as)?;
+        }
         self.choose(&mut found)?;
         self.reading.check_used(&found)?;
         self.reading.order(&mut found)?;

@@ -550,6 +550,42 @@ fn a_golden_trajectory_is_read_by_the_rules_of_any_other() {
     assert!(warnings.contains("golden.csv: not read: energy"), "{warnings}");
 }
 
+/// Rows are at one time where their moments are one, however both are written.
+#[test]
+fn dates_and_counts_since_1970_are_matched_by_their_moments() {
+    let scratch = Scratch::new("audit-golden-dates");
+    let all = rows("");
+    let header = "q_w,q_x,q_y,q_z,omega_body_x,omega_body_y,omega_body_z";
+    let written = |name: &str, head: &str, rows: &[[f64; 8]], time: &dyn Fn(f64) -> String| {
+        let row = |row: &[f64; 8]| {
+            let cells: Vec<String> = row[1..].iter().map(f64::to_string).collect();
+            format!("{},{}\n", time(row[0]), cells.join(","))
+        };
+        let rows: String = rows.iter().map(row).collect();
+        scratch.file(name, format!("# moments: 1,2,3\n{head},{header}\n{rows}"))
+    };
+    let count = |t: f64| format!("{}", 1_700_000_000_000_u64 + (1e3 * t).round() as u64);
+    let date = |t: f64| format!("2023-11-14T22:13:{:06.3}Z", 20.0 + t);
+    let unzoned = |t: f64| date(t).replace('Z', "");
+    let dates = written("dates.csv", "t", &all, &date);
+    let counts = written("counts.csv", "t (ms)", &all, &count);
+    // the second half, by the other clock
+    let late_counts = written("late-counts.csv", "t (ms)", &all[100..], &count);
+    let late_dates = written("late-dates.csv", "t", &all[100..], &date);
+    for (record, golden) in [(&dates, &late_counts), (&counts, &late_dates), (&counts, &late_counts)] {
+        let answer = run(&format!("audit {record} --against {golden} --format json"));
+        let found = verdict(&answer);
+        assert_eq!((answer.code, &found["verdict"]), (0, &"right".into()), "{golden}: {found:#}");
+        assert_eq!((&found["against"]["rows"], &found["against"]["of"]), (&101.into(), &101.into()));
+    }
+    let plain = written("plain.csv", "t", &all, &|t: f64| t.to_string());
+    let says = "read from the first row on, 1700000010000, and those of the record count from no such moment";
+    refused(&format!("audit {plain} --against {late_counts}"), &["late-counts.csv: ", says, "since 1970"]);
+    // an hour that nobody told
+    let open = written("open.csv", "t", &all, &unzoned);
+    refused(&format!("audit {open} --against {late_counts}"), &["late-counts.csv: ", "no time scale"]);
+}
+
 /// Times are whole sixteenths of a second.
 #[test]
 fn a_comparison_of_some_rows_promises_nothing_of_all() {

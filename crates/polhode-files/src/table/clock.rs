@@ -32,6 +32,9 @@ const COUNTS: [(TimeUnit, f64); 3] =
     [(TimeUnit::Nanoseconds, 1e18), (TimeUnit::Microseconds, 1e15), (TimeUnit::Milliseconds, 1e12)];
 const LATEST: f64 = 4.0;
 
+/// Nanoseconds in a second.
+const BILLION: i128 = 1_000_000_000;
+
 impl Clock {
     /// With the unit that is known of numbers.
     pub(crate) fn new(unit: Option<TimeUnit>) -> Self {
@@ -63,6 +66,24 @@ impl Clock {
     /// The first time as it is written, where the others count from it.
     pub(crate) fn since(&self) -> Option<&str> {
         self.since.as_deref()
+    }
+
+    /// The moment of the first time, where the others count from it.
+    pub(crate) fn begins(&self) -> Option<Date> {
+        Some(match self.kind.as_ref()? {
+            Kind::Numbers(_) => return None,
+            Kind::Counts(unit, first) => {
+                let nanoseconds = match unit {
+                    TimeUnit::Nanoseconds => 1,
+                    TimeUnit::Microseconds => 1_000,
+                    _ => 1_000_000,
+                };
+                let first = first * nanoseconds;
+                Date::of_unix(first.div_euclid(BILLION) as i64, first.rem_euclid(BILLION) as u32)
+            }
+            Kind::Stamps(first) => Date::of_unix(*first as i64, 0),
+            Kind::Dates(first) => *first,
+        })
     }
 
     /// What the times are where they are no numbers of a unit, once one was read.

@@ -452,6 +452,7 @@ impl<'t> Table<'t> {
                 (format!("{steps}{unit}"), of_times)
             }),
             since: self.clock.since().map(String::from),
+            begins: self.clock.begins(),
             sample_rate: sample_rate(steps),
             axes: None,
         }
