@@ -216,15 +216,18 @@ impl Record {
         self.findings.iter().filter(|(_, finding)| what(finding)).count()
     }
 
-    /// The parts that lie in the windows (start, end), s, both ends included. Windows that overlap count as one, so that no
-    /// sample serves twice.
+    /// The parts that lie in the windows (start, end), s, both ends included. Windows that overlap count as one, and where one ends
+    /// and the next begins the sample is of the first, so that none serves twice.
     ///
     /// # Errors
     /// A window that is not ascending, or without samples.
     pub fn windows(&self, windows: &[(f64, f64)]) -> Result<Record, RecordError> {
         let mut cut = self.of_none();
+        let mut before = f64::NEG_INFINITY;
         for window in joined(windows)? {
-            let part = self.span(window);
+            let start = if window.0 == before { before.next_up() } else { window.0 };
+            before = window.1;
+            let part = self.span((start, window.1));
             if part.segments.is_empty() {
                 let first = self.segments.first().and_then(|s| s.times.first()).copied().unwrap_or(0.0);
                 let last = self.segments.last().and_then(|s| s.times.last()).copied().unwrap_or(0.0);

@@ -28,7 +28,7 @@ pub(crate) struct RecordArguments {
     /// are reversed, is x, y and z; -y in x,-y,z undoes a mirrored axis. Applied before everything else [default: x,y,z]
     #[arg(long, value_name = "x,-y,z", value_parser = SignedAxes::parse, allow_hyphen_values = true, help_heading = "Reading")]
     axes: Option<SignedAxes>,
-    /// Use only samples from t0 to t1, s; repeatable. With N: of the N-th file only, and then every file needs one [default: all samples; fit: if the
+    /// Use only samples from t0 to t1, s; repeatable: attitude goes on across windows that touch. With N: of the N-th file only, and then every file needs one [default: all samples; fit: if the
     /// body does not rotate freely from the first to the last, the flights, which are found and listed]
     #[arg(long, value_name = "[N:]t0,t1", value_parser = window, allow_hyphen_values = true, help_heading = "Reading")]
     window: Vec<Window>,

@@ -217,6 +217,11 @@ fn records_that_tell_no_attitude_are_refused_by_name() {
         assert!(restarted.err.contains(says), "{says}: {}", restarted.err);
     }
     assert_eq!(run(&format!("attitude {gap} --kind rate --window 9,20")).code, 0);
+    // windows that touch are one
+    let [one, two] = ["--window 0,3.5", "--window 2,3.5 --window 0,2"]
+        .map(|windows| run(&format!("attitude {gap} --kind rate {windows}")));
+    assert_eq!((one.code, two.code), (0, 0), "{}", two.err);
+    assert_eq!((one.out.lines().count(), &one.out), (37, &two.out));
     let twice = file("twice.csv", &format!("{even}3.9,2,0,0\n4,1,0,0\n"));
     refused_with(
         &["attitude", &twice, "--kind", "average"],

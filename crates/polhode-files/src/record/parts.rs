@@ -73,12 +73,18 @@ struct Window {
 
 impl Parts {
     /// Of the file at `path`, or of standard input where that is `-`: the samples in `windows`, s, both ends included, or all
-    /// where there are none.
+    /// where there are none. Windows of which one ends where the next begins are one.
     ///
     /// # Errors
     /// As [`open`](super::open); a window that is not ascending.
     pub fn open(path: &Path, reading: &ReadOptions, windows: &[(f64, f64)]) -> Result<Self, Error> {
-        let windows = joined(windows).map_err(|error| Error::Input(error.to_string()))?;
+        let mut spans: Vec<(f64, f64)> = Vec::new();
+        for (start, end) in joined(windows).map_err(|error| Error::Input(error.to_string()))? {
+            match spans.last_mut() {
+                Some(last) if start <= last.1 => last.1 = end,
+                _ => spans.push((start, end)),
+            }
+        }
         Ok(Parts {
             rows: Rows::new(Table::open(path, reading)?, reading)?,
             rows_of_a_part: ROWS,
@@ -88,7 +94,7 @@ impl Parts {
             has_more: true,
             goes_on: false,
             skipped: (0, None),
-            windows: windows.into_iter().map(|span| Window { span, is_empty: true }).collect(),
+            windows: spans.into_iter().map(|span| Window { span, is_empty: true }).collect(),
             span: None,
         })
     }

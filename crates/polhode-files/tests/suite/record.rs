@@ -161,7 +161,7 @@ fn overlapping_windows_are_one_and_units_end_names() {
     let record = read(&text).unwrap();
     assert_eq!(record.segments[0].times()[99], 0.99);
     let twice = record.windows(&[(0.3, 0.6), (0.0, 0.4), (0.6, 0.9), (0.0, 0.4)]).unwrap();
-    assert_eq!((twice.segments.len(), twice.samples()), (2, 61 + 31));
+    assert_eq!((twice.segments.len(), twice.samples()), (2, 61 + 30));
     assert_eq!(read(&text.replace("time_ms", "timestampNs")).unwrap().segments[0].times()[99], 990e-9);
     assert!(record::read(&text, "a", &ReadOptions::default().with_time_unit(TimeUnit::Seconds)).is_err());
 }
