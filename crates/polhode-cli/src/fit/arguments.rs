@@ -1,7 +1,5 @@
 //! The flags of what the fit reckons with: torques, the sensor, and what gives the absolute size.
 
-use std::sync::OnceLock;
-
 use clap::{Args, ValueEnum};
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::Inertia;
@@ -9,7 +7,7 @@ use polhode_files::error::Error;
 use polhode_files::numbers::{list, number, numbers, positive};
 use polhode_fit::{Estimate, Known, Prior, SensorPriors, TorqueModel};
 
-use crate::flags::body::{check_size, described};
+use crate::flags::body::{ReadOnce, check_size, described};
 
 /// The torque models of the command line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -99,21 +97,17 @@ pub(super) struct KnownArguments {
     /// Moment about an axis, kg m^2
     #[arg(long, value_name = "nx,ny,nz,I", value_parser = numbers::<4>, allow_hyphen_values = true)]
     moment: Option<[f64; 4]>,
-    /// That of --body, read once: its file may have remarks.
+    /// What --body names.
     #[arg(skip)]
-    read: OnceLock<Inertia>,
+    read: ReadOnce,
 }
 
 impl KnownArguments {
     /// The body that `--body` names.
     pub(super) fn body(&self) -> Result<Option<Inertia>, Error> {
         let Some(text) = &self.body else { return Ok(None) };
-        if let Some(known) = self.read.get() {
-            return Ok(Some(known.clone()));
-        }
-        check_size(text)?;
-        let inertia = described(text)?.inertia;
-        Ok(Some(self.read.get_or_init(|| inertia).clone()))
+        let read = || check_size(text).and_then(|()| described(text));
+        Ok(Some(self.read.or_read(read)?.inertia.clone()))
     }
 
     /// That the moments of --body are those of the record's mirror, where they are.

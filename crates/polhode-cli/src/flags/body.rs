@@ -26,9 +26,27 @@ pub(crate) struct BodyArguments {
     /// Body of the catalogue, see `polhode bodies`; or a file: JSON of `polhode inertia` or `polhode fit`, TOML of parts, URDF, MJCF or SDF, with :LINK where it has several; a mesh, STL, OBJ or PLY, of 1 kg/m^3, where no torque or wheel acts
     #[arg(long, value_name = "NAME|FILE[:LINK]")]
     body: Option<String>,
-    /// What --body names, read once: its file may have remarks.
+    /// What --body names.
     #[arg(skip)]
-    read: OnceLock<Described>,
+    read: ReadOnce,
+}
+
+/// A body of a flag, read once: its file may have remarks.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct ReadOnce(OnceLock<Described>);
+
+impl ReadOnce {
+    /// What was read before, or what `read` reads now.
+    pub(crate) fn or_read(
+        &self,
+        read: impl FnOnce() -> Result<Described, Error>,
+    ) -> Result<&Described, Error> {
+        if let Some(found) = self.0.get() {
+            return Ok(found);
+        }
+        let found = read()?;
+        Ok(self.0.get_or_init(|| found))
+    }
 }
 
 /// Six entries of a tensor, or nine.
@@ -187,11 +205,7 @@ impl BodyArguments {
             let inertia = Inertia::from_tensor(tensor).map_err(|error| refused("--inertia", error))?;
             return Ok(Described::alone(inertia));
         }
-        if let Some(read) = self.read.get() {
-            return Ok(read.clone());
-        }
-        let read = described(self.body.as_deref().unwrap_or_default())?;
-        Ok(self.read.get_or_init(|| read).clone())
+        self.read.or_read(|| described(self.body.as_deref().unwrap_or_default())).cloned()
     }
 }
 
@@ -204,4 +218,25 @@ pub(crate) struct PublishedStart {
     /// What is known of the attitude, in words.
     pub(crate) known: String,
     pub(crate) orientation: Option<Orientation>,
+}
+
+#[cfg(test)]
+mod tests {
+    use core::cell::Cell;
+
+    use super::*;
+
+    #[test]
+    fn a_body_is_read_until_it_was_and_then_no_more() {
+        let (once, count) = (ReadOnce::default(), Cell::new(0));
+        let read = || {
+            count.set(count.get() + 1);
+            described("textbook")
+        };
+        assert!(once.or_read(|| described("nobody")).is_err());
+        for _ in 0..3 {
+            assert_eq!(once.or_read(read).unwrap().inertia.principal_moments(), [1.0, 2.0, 3.0]);
+        }
+        assert_eq!(count.get(), 1);
+    }
 }
