@@ -153,7 +153,7 @@ impl Trajectory {
         let is_counted =
             invariants.is_some() && matches!(truth.closed_form(), None | Some(ExactMotion::Free(_)));
         let body = truth.body();
-        let axis = body.inertia().principal_axes() * Vector3::y();
+        let axis: Vector3<f64> = body.inertia().principal_axes() * Vector3::y();
         let along = |omega: Vector3<f64>| omega.dot(&axis) / omega.norm();
         let begun = along(body.omega_of(&truth.start()));
         let mut followed = is_counted.then(|| vec![begun]);
