@@ -10,6 +10,8 @@ mod rows;
 mod segment;
 mod spikes;
 
+use core::ops::Range;
+
 use nalgebra::Vector3;
 
 use crate::units::RateUnit;
@@ -276,6 +278,19 @@ impl Record {
             cut.findings.extend(self.findings.iter().filter(|(t, _)| inside(t)));
         }
         cut
+    }
+
+    /// With each [stretch](Segment::stretches) as a segment: a long run of samples that are left out parts as a gap does.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn parted(self) -> Record {
+        let stretches = |(k, segment): (usize, &Segment)| {
+            let own = |range: Range<usize>| segment.times.get(range);
+            let ends = |own: &[f64]| Some((k, *own.first()?, *own.last()?));
+            segment.stretches().filter_map(own).filter_map(ends).collect::<Vec<_>>()
+        };
+        let spans: Vec<_> = self.segments.iter().enumerate().flat_map(stretches).collect();
+        if spans.len() > self.segments.len() { self.spans(spans) } else { self }
     }
 
     /// Whether it has the times and rates of every segment of `other`, if that has any.

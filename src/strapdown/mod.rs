@@ -14,6 +14,7 @@ mod budget;
 mod checked;
 mod choice;
 mod error;
+mod findings;
 mod flight;
 mod kind;
 mod magnus;
@@ -29,6 +30,8 @@ mod window;
 pub use budget::{Budget, Budgeted, Estimate};
 pub use choice::{attitudes, choose};
 pub use error::StrapdownError;
+#[doc(hidden)]
+pub use findings::Findings;
 pub use flight::{Flight, FlightError};
 pub use kind::{Kind, UnknownKind};
 pub use noise::{NOISE_SAMPLES, noise};

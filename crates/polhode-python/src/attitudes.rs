@@ -1,8 +1,9 @@
 //! Attitude from measured angular velocities.
 
 use nalgebra::Vector3;
-use polhode::record;
-use polhode::strapdown::{self, Estimate, Flight, Kind, Rule, Sensor};
+use polhode::num::Shown;
+use polhode::record::{self, Segment};
+use polhode::strapdown::{self, Estimate, Findings, Flight, Kind, Rule, Sensor};
 use polhode_pages::figure::{Curve, Figure, Scale, sheet};
 use polhode_pages::table::{Cell, Column, Table};
 use pyo3::prelude::*;
@@ -32,7 +33,10 @@ pub(crate) struct Attitudes {
 /// `trapezoid`, `two-speed`, `runge-kutta`. Standard deviations of the sensor: `noise` of a reading (found in the record where it
 /// is not given), `bias`, rad/s, `scale_error`, a ratio, `stamps`, s, of which noise that is found is a part. With a free `body` the
 /// attitudes are those of its exact motion that fits all rates best; a warning says where they contradict those of the readings alone.
-/// Other warnings are of samples that stand far out of their neighbours, which the command leaves out, and of attitudes that are lost.
+/// What the command leaves out is left out here, too, so that there may be fewer attitudes than samples, at the times `t` of the result:
+/// rates that stand far out of their neighbours, repeat the reading before or are at the end of the sensor's range; rates of one time are
+/// averaged. Warnings say so, and where an increment may be missing, the samples are too few to tell noise or truncation, or the attitude is
+/// lost. Gaps are refused.
 ///
 /// >>> import numpy, polhode
 /// >>> t = numpy.arange(2000) * 0.05
@@ -61,7 +65,7 @@ pub(crate) fn attitude(
     body: Option<&Bound<'_, PyAny>>,
     order: &str,
 ) -> PyResult<Attitudes> {
-    let (times, rates) = samples(t, rates)?;
+    let (record, row) = recorded(t, rates)?;
     let kind: Kind = kind.parse().map_err(of("kind"))?;
     let order = Order::of(order)?;
     let start =
@@ -72,47 +76,44 @@ pub(crate) fn attitude(
         return Err(refused(format!("body: a flight is fitted to rates, and the readings are {kind}s")));
     }
     let found = aside(t.py(), move |_| {
+        let Cleaned { record, mut warnings } = Cleaned::of(record, kind, row)?;
+        let segment = single(&record)?;
+        let (times, rates) = (segment.times(), segment.rates());
+        let (noise, is_found) = match noise {
+            Some(noise) => (noise, false),
+            None => {
+                let (noise, is_enough) = Findings::noise(&record);
+                if !is_enough {
+                    warnings.push(Findings::without_noise("sigma", "noise"));
+                }
+                (noise, is_enough)
+            }
+        };
         // noise that is found in the record holds that of the stamps
-        let stamps = if noise.is_none() && stamps.is_finite() { stamps.min(0.0) } else { stamps };
-        let record = record::Record::from_samples(&times, &rates).ok();
-        // rates that stand far out of their neighbours
-        let spikes = record.as_ref().filter(|_| kind == Kind::Rate).and_then(record::Record::without_spikes);
-        let noise = noise.unwrap_or_else(|| {
-            // steps of digital readings count as noise
-            let rounding = record.map_or(0.0, |record| record.rounding(&record.quanta()).sqrt());
-            strapdown::noise(&times, &rates).max(rounding)
-        });
+        let stamps = if is_found && stamps.is_finite() { stamps.min(0.0) } else { stamps };
         let sensor =
             Sensor::default().with_noise(noise).with_bias(bias).with_scale(scale_error).with_stamps(stamps);
         let text = |error: &dyn std::fmt::Display| error.to_string();
         let rule = match asked {
             Asked::Rule(rule) => rule,
-            Asked::Magnus(order, samples) => strapdown::choose(&times, &rates, kind, order, samples, sensor)
-                .map_err(|error| text(&error))?,
+            Asked::Magnus(order, samples) => {
+                strapdown::choose(times, rates, kind, order, samples, sensor).map_err(|error| text(&error))?
+            }
         };
+        warnings.extend(Findings::without_truncation(rule, times.len()));
         let integrated =
-            strapdown::attitudes(&times, &rates, kind, rule, start, sensor).map_err(|error| text(&error))?;
-        let Some(inertia) = inertia else { return Ok((integrated, rule.to_string(), noise, None, spikes)) };
-        let flight = Flight::fit(&inertia, &times, &rates, start, sensor).map_err(|error| text(&error))?;
-        let estimates = flight.at(&times).map_err(|error| text(&error))?;
+            strapdown::attitudes(times, rates, kind, rule, start, sensor).map_err(|error| text(&error))?;
+        let Some(inertia) = inertia else { return Ok((integrated, rule.to_string(), noise, None, warnings)) };
+        let flight = Flight::fit(&inertia, times, rates, start, sensor).map_err(|error| text(&error))?;
+        let estimates = flight.at(times).map_err(|error| text(&error))?;
         let pairs = estimates.iter().zip(&integrated);
         let apart = pairs
             .map(|(one, other)| (one.deviations_from(other), one.time))
             .max_by(|a, b| a.0.total_cmp(&b.0));
-        Ok::<_, String>((estimates, "exact motion".to_string(), noise, apart, spikes))
+        Ok::<_, String>((estimates, "exact motion".to_string(), noise, apart, warnings))
     })?;
-    let (estimates, rule, noise, apart, spikes) = found.map_err(of("rates"))?;
-    if let Some((count, time)) = spikes.and_then(|(spikes, _)| Some((spikes.len(), spikes.first()?.time))) {
-        let samples =
-            if count == 1 { "1 sample stands".to_string() } else { format!("{count} samples stand") };
-        warn(
-            t.py(),
-            &format!(
-                "{samples} far out of the neighbours, the first at t = {time} s, and sigma does not contain what that does to the attitude; \
-                 the command leaves such samples out"
-            ),
-        )?;
-    }
+    let (estimates, rule, noise, apart, warnings) = found.map_err(of("rates"))?;
+    warnings.iter().try_for_each(|warning| warn(t.py(), warning))?;
     if let Some(first) = estimates.iter().find(|estimate| estimate.budget.sigma() > Estimate::LOST) {
         let (time, most) = (first.time, Estimate::LOST);
         warn(
@@ -159,25 +160,64 @@ fn asked(text: &str) -> PyResult<Asked> {
     Ok(Asked::Magnus(Some(order), samples))
 }
 
-/// Times and readings, of arrays or of the one segment of a record.
-fn samples(
+/// A record, or one of times and readings, and what its rows are called.
+fn recorded(
     t: &Bound<'_, PyAny>,
     rates: Option<&Bound<'_, PyAny>>,
-) -> PyResult<(Vec<f64>, Vec<Vector3<f64>>)> {
+) -> PyResult<(record::Record, &'static str)> {
     if let Ok(Record { record, .. }) = t.extract::<Record>() {
-        return match (rates, record.segments.as_slice()) {
-            (Some(_), _) => Err(refused("rates: the record has its own; leave them out")),
-            (None, [segment]) => Ok((segment.times().to_vec(), segment.rates().to_vec())),
-            (None, segments) => Err(refused(format!(
-                "t: a record of {} segments with gaps between them, in which the body turned nobody knows how; give t and rates of one",
-                segments.len()
-            ))),
+        return match rates {
+            Some(_) => Err(refused("rates: the record has its own; leave them out")),
+            None => Ok((record, "line")),
         };
     }
     let Some(rates) = rates else { return Err(refused("rates: missing; give times and rates, or a Record")) };
     let times = Numbers::of("t", t)?.list()?;
     let rates = Numbers::of("rates", rates)?.rows::<3>(Some(times.len()))?;
-    Ok((times, rates.into_iter().map(Vector3::from).collect()))
+    let rates: Vec<Vector3<f64>> = rates.into_iter().map(Vector3::from).collect();
+    record::Record::from_samples(&times, &rates).map(|record| (record, "row")).map_err(refused)
+}
+
+/// A record as the command integrates it, and what is to be said of that.
+struct Cleaned {
+    record: record::Record,
+    warnings: Vec<String>,
+}
+
+impl Cleaned {
+    fn of(record: record::Record, kind: Kind, row: &str) -> Result<Self, String> {
+        // an increment that stands out is none that may be left out, as its turn would be lost
+        let cleaned = if kind == Kind::Rate { record.without_spikes() } else { None };
+        let (spikes, record) = cleaned.unwrap_or_else(|| (Vec::new(), record));
+        let mut findings = Findings::default();
+        findings.add(&record, &spikes);
+        if let Some(rule) = findings.lost(kind, 0) {
+            return Err(rule);
+        }
+        if kind != Kind::Rate {
+            findings.add_intervals(&record, None);
+        }
+        Ok(Cleaned { record: record.parted(), warnings: findings.warnings(row) })
+    }
+}
+
+/// The one segment of a record; between several the body turned nobody knows how.
+fn single(record: &record::Record) -> Result<&Segment, String> {
+    match record.segments.as_slice() {
+        [segment] => Ok(segment),
+        segments => {
+            let first = segments.first().and_then(|segment| segment.times().last());
+            let next = segments.get(1).and_then(|segment| segment.times().first());
+            let gap = first.zip(next).map_or(String::new(), |(end, start)| {
+                format!(", the first from {} s to {} s", Shown(*end), Shown(*start))
+            });
+            Err(format!(
+                "{} segments with gaps between them, where rows are missing or left out{gap}: how the body turned in a gap is not known; give \
+                 t and rates of one segment",
+                segments.len()
+            ))
+        }
+    }
 }
 
 impl Attitudes {

@@ -1,5 +1,7 @@
 """Attitudes from rates."""
 
+import warnings
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -33,11 +35,55 @@ def test_what_an_attitude_is_not_worth_is_said():
     # stamps are part of noise that is found
     assert (polhode.attitude(T, spike, kind="rate", stamps=0.01).budget["stamps"] == 0).all()
     assert polhode.attitude(T, spike, kind="rate", stamps=0.01, noise=1e-3).budget["stamps"][-1] > 0
+    # a spike is left out, as by the command, and does nothing to the attitude
+    quiet = polhode.attitude(T, spike, kind="rate", rule="magnus:4,4")
     spike[1000] += 1
-    with pytest.warns(PolhodeWarning, match="1 sample stands far out of the neighbours, the first at t = 50"):
-        polhode.attitude(T, spike, kind="rate")
+    with pytest.warns(PolhodeWarning, match=r"1 spikes are left out, the first at row 1001 \(50 s\)"):
+        found = polhode.attitude(T, spike, kind="rate", rule="magnus:4,4")
+    assert (found.t == np.delete(T, 1000)).all()
+    assert angles(found.attitude[-1:], quiet.attitude[-1:])[0] < 1e-3
     with pytest.warns(PolhodeWarning, match="the attitude is lost: from t = .* s on its standard deviation is above 1 rad"):
         polhode.attitude(T, RATES, kind="rate", noise=0, bias=10.0)
+
+
+def test_warnings_are_those_of_the_command():
+    def told(t, rates, **options):
+        with warnings.catch_warnings(record=True) as found:
+            warnings.simplefilter("always")
+            polhode.attitude(t, rates, **options)
+        return [str(one.message) for one in found]
+
+    noise = "fewer than 5 samples: their noise cannot be found, and sigma is without it; give noise"
+    truncation = "one polynomial goes through all 4 samples"
+    four = told(T[:4], RATES[:4], kind="rate", rule="magnus:4,4")
+    assert noise in four and any(text.startswith(truncation) for text in four), four
+    assert not told(T[:4], RATES[:4], kind="rate", rule="magnus:2,2", noise=1e-3)
+    # stamps count where no noise is found that holds them
+    with pytest.warns(PolhodeWarning, match="fewer than 5 samples"):
+        assert polhode.attitude(T[:4], RATES[:4], kind="rate", rule="magnus:2,2", stamps=0.01).budget["stamps"][-1] > 0
+    missing = np.delete(np.arange(100), 20)
+    one = "1 intervals are longer than 1.5 usual ones, the first ends at 1.05 s"
+    assert any(text.startswith(one) for text in told(T[missing], RATES[missing] * 0.05, kind="increment", rule="magnus:2,2"))
+    assert not any("intervals" in text for text in told(T[missing], RATES[missing], kind="rate"))
+    twice = np.insert(np.arange(100), 20, 20)
+    merged = "1 rows have the time of the row before, the first at 1 s: their rates are averaged"
+    assert told(T[twice], RATES[twice], kind="rate") == [merged]
+    with pytest.raises(PolhodeError, match="1 rows have the time of the row before; of averages each one counts"):
+        polhode.attitude(T[twice], RATES[twice], kind="average")
+
+
+def test_the_command_leaves_out_the_same(command):
+    spiked = RATES + np.random.default_rng(1).normal(0, 1e-3, RATES.shape)
+    spiked[[300, 1000]] += 1
+    rows = "".join("{!r},{!r},{!r},{!r}\n".format(*map(float, row)) for row in np.column_stack([T, spiked]))
+    record = command.folder / "spikes.csv"
+    record.write_text("t (s),wx (rad/s),wy (rad/s),wz (rad/s)\n" + rows)
+    beside = command("attitude", record, "--kind", "rate")
+    with pytest.warns(PolhodeWarning, match="2 spikes are left out"):
+        found = polhode.attitude(T, spiked, kind="rate")
+    assert [row["t"] for row in beside] == list(found.t)
+    assert [row["attitude_sigma"] for row in beside] == list(found.sigma)
+    assert [row["q_w"] for row in beside] == list(found.attitude[:, 0])
 
 
 def test_orders_of_rules_and_of_quaternions():
@@ -62,8 +108,9 @@ def test_orders_of_rules_and_of_quaternions():
         (lambda: polhode.attitude(T, RATES, kind="rate", rule="euler"), "rule: 'euler'; it must be auto"),
         (lambda: polhode.attitude(T, RATES, kind="rate", rule="magnus:6,7"), "7 samples"),
         (lambda: polhode.attitude(T, RATES, kind="average", rule="runge-kutta"), "needs instantaneous rates"),
-        (lambda: polhode.attitude(T * 0, RATES, kind="rate"), "times must ascend"),
-        (lambda: polhode.attitude(T, RATES * np.nan, kind="rate", noise=0), "rates: sample 0"),
+        (lambda: polhode.attitude(T[::-1], RATES, kind="rate"), "times must not decrease"),
+        (lambda: polhode.attitude(T, RATES * np.nan, kind="rate", noise=0), r"line 1, column 2 \(wx\)"),
+        (lambda: polhode.attitude(np.where(T > 50, T + 100, T), RATES, kind="rate"), "2 segments with gaps .* from 50 s to 150.05"),
         (lambda: polhode.attitude(T, RATES * 100, kind="rate"), "more than half a turn"),
         (lambda: polhode.attitude(T, RATES, kind="rate", bias=-1.0), "the bias of the sensor is -1"),
         (lambda: polhode.attitude(T, RATES, kind="rate", stamps=-1.0), "the error of the stamps of the sensor is -1"),

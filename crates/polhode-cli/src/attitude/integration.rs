@@ -4,7 +4,7 @@ use std::vec::IntoIter;
 
 use nalgebra::UnitQuaternion;
 use polhode::record::Segment;
-use polhode::strapdown::{Budgeted, Estimate, Kind, Rule, Sensor, Strapdown, StrapdownError};
+use polhode::strapdown::{Budgeted, Estimate, Findings, Kind, Rule, Sensor, Strapdown, StrapdownError};
 use polhode_files::error::{Error, tell, warn};
 use polhode_files::text::rounded;
 
@@ -109,12 +109,8 @@ impl Integration {
         });
         let (rule, time) = (rule::words(self.course.rule), rounded(last.time));
         tell("note", &format!("{rule}; at t = {time} s: {}{line}", parts.join(", ")));
-        let through = if let Rule::Magnus(magnus) = self.course.rule { magnus.samples() } else { 2 };
-        if (2..=through).contains(&self.samples) {
-            warn(&format!(
-                "one polynomial goes through all {} samples: how far the motion between them is from it is not known, and not in the truncation",
-                self.samples
-            ));
+        if let Some(warning) = Findings::without_truncation(self.course.rule, self.samples) {
+            warn(&warning);
         }
         if let Some(angle) = apart(self.averages) {
             let message = format!(

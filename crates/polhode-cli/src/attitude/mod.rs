@@ -14,7 +14,7 @@ use clap::{Args, ValueEnum};
 use nalgebra::UnitQuaternion;
 use polhode::record::{Record, Segment};
 use polhode::rotation::EulerSequence;
-use polhode::strapdown::{Estimate, NOISE_SAMPLES};
+use polhode::strapdown::{Estimate, Findings};
 use polhode_files::error::{Error, warn};
 use polhode_files::numbers::{quaternion, turn};
 use polhode_files::record::Part;
@@ -140,9 +140,7 @@ impl Attitude {
         }
         apart.tell();
         if course.is_some_and(|course| course.noise_by == NoiseBy::Nothing) {
-            warn(&format!(
-                "fewer than {NOISE_SAMPLES} samples: their noise cannot be found, and attitude_sigma is without it; give --noise"
-            ));
+            warn(&Findings::without_noise("attitude_sigma", "--noise"));
         }
         rows.finish()?;
         match lost {

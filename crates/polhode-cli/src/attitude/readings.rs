@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use clap::{Args, ValueEnum};
-use polhode::record::{Record, Segment, Spike};
-use polhode::strapdown::{Kind, StrapdownError};
+use polhode::record::{Segment, Spike};
+use polhode::strapdown::{Findings, Kind, StrapdownError};
 use polhode::units::RateUnit;
 use polhode_files::error::{Error, tell, warn};
 use polhode_files::record::{Part, Parts};
@@ -56,29 +56,8 @@ pub(super) struct Readings {
     segments: usize,
     /// Time of the last sample, s.
     last: Option<f64>,
-    found: Found,
+    found: Findings,
 }
-
-/// What was found among the rows so far.
-#[derive(Default)]
-struct Found {
-    samples: usize,
-    merged: usize,
-    /// s.
-    first_merged: Option<f64>,
-    repeated: usize,
-    saturated: usize,
-    new_readings_rate: Option<f64>,
-    spikes: usize,
-    in_bursts: usize,
-    first_spike: Option<Spike>,
-    /// Intervals in which a row may be missing, and the end of the first, s.
-    long: usize,
-    first_long: Option<f64>,
-}
-
-/// An interval in which a row may be missing, in median intervals.
-const LONG: f64 = 1.5;
 
 impl KindArguments {
     /// Those of a file that can be integrated; what is lost or doubtful in it is refused by name. `whole`: all in one part.
@@ -123,7 +102,7 @@ impl KindArguments {
             restarts: self.restart,
             segments: 0,
             last: None,
-            found: Found::default(),
+            found: Findings::default(),
         })
     }
 }
@@ -168,17 +147,12 @@ impl Readings {
             self.tell();
             return Ok(None);
         };
-        self.found.add(&part);
+        self.found.add(&part.record, &part.spikes);
         self.check()?;
         if self.kind != Kind::Rate {
-            self.found.add_long(&part.record, self.last.filter(|_| part.continues));
+            self.found.add_intervals(&part.record, self.last.filter(|_| part.continues));
         }
-        // a long burst that is left out parts a segment as a gap does
-        let segments = part.record.segments.iter().enumerate();
-        let spans: Vec<(usize, f64, f64)> = segments.flat_map(|(k, segment)| stretches(k, segment)).collect();
-        if spans.len() > part.record.segments.len() {
-            part.record = part.record.spans(spans);
-        }
+        part.record = part.record.parted();
         for (k, segment) in part.record.segments.iter().enumerate() {
             if !(k == 0 && part.continues) {
                 self.check_gap(segment, &part.spikes)?;
@@ -191,17 +165,9 @@ impl Readings {
 
     /// Every increment and every average counts: none may be missing or merged.
     fn check(&self) -> Result<(), Error> {
-        let refused = |count: usize, what: &str| {
-            let rule = format!("{count} {what}; of {}s each one counts", self.kind);
-            Err(Error::input(self.name(), "", &rule, "correct the record; rates alone may miss a row"))
-        };
-        match (self.parts.skipped().0, self.found.merged, self.found.repeated) {
-            _ if self.kind == Kind::Rate => Ok(()),
-            (0, 0, 0) => Ok(()),
-            (0, 0, count) => refused(count, "rows repeat the reading before"),
-            (0, count, _) => refused(count, "rows have the time of the row before"),
-            (count, ..) => refused(count, "rows cannot be read"),
-        }
+        let remedy = "correct the record; rates alone may miss a row";
+        let lost = self.found.lost(self.kind, self.parts.skipped().0);
+        lost.map_or(Ok(()), |rule| Err(Error::input(self.name(), "", &rule, remedy)))
     }
 
     /// Refuses a `segment` that does not go on where the samples before it end.
@@ -210,7 +176,7 @@ impl Readings {
             return Ok(());
         };
         let is_burst = |spike: &Spike| spike.burst.is_some() && end < spike.time && spike.time < *start;
-        let cause = match self.found.saturated {
+        let cause = match self.found.saturated() {
             _ if spikes.iter().any(is_burst) => "a burst of readings that are left out".to_string(),
             0 => "a gap".to_string(),
             count => {
@@ -232,20 +198,7 @@ impl Readings {
 
     /// What was left out or changed.
     fn tell(&self) {
-        let Found {
-            samples,
-            merged,
-            first_merged,
-            repeated,
-            saturated,
-            new_readings_rate,
-            spikes,
-            in_bursts,
-            long,
-            first_long,
-            ..
-        } = self.found;
-        tell_skipped(self.parts.skipped(), samples);
+        tell_skipped(self.parts.skipped(), self.found.samples());
         self.tell_times();
         if self.is_unit_open {
             let (read, other) = match self.kind {
@@ -260,30 +213,7 @@ impl Readings {
                 ),
             );
         }
-        if merged > 0 {
-            let first = first_merged.map_or(String::new(), |t| format!(", the first at {} s", short(t)));
-            warn(&format!("{merged} rows have the time of the row before{first}: their rates are averaged"));
-        }
-        if repeated > 0 {
-            let rate = new_readings_rate.map_or(String::new(), |hz| format!(", {hz:.4} new ones a second"));
-            warn(&format!("{repeated} rows repeat the reading before and are left out{rate}"));
-        }
-        if let Some(first) = self.found.first_spike {
-            let (line, time) = (first.line, short(first.time));
-            let bursts =
-                if in_bursts > 0 { format!(", {in_bursts} of them in bursts") } else { String::new() };
-            warn(&format!("{spikes} spikes are left out{bursts}, the first at line {line} ({time} s)"));
-        }
-        if let Some(first) = first_long {
-            let first = short(first);
-            warn(&format!(
-                "{long} intervals are longer than {LONG} usual ones, the first ends at {first} s: the turn of a row that is missing there is \
-                 not in the attitude"
-            ));
-        }
-        if saturated > 0 {
-            warn(&format!("{saturated} samples at the end of the sensor's range are left out"));
-        }
+        self.found.warnings("line").iter().for_each(|warning| warn(warning));
         if self.segments > 1 {
             let (name, parts) = (self.name(), self.segments);
             let rule = "each has a start of its own, as the turn between them is not known";
@@ -328,46 +258,5 @@ impl Readings {
             }
             _ => Error::Input(format!("{}: {error}", self.name())),
         }
-    }
-}
-
-/// The segment with number `k`, and from when to when it has samples without a long burst between them, s.
-fn stretches(k: usize, segment: &Segment) -> impl Iterator<Item = (usize, f64, f64)> {
-    segment.stretches().filter_map(move |range| {
-        let own = segment.times().get(range)?;
-        Some((k, *own.first()?, *own.last()?))
-    })
-}
-
-impl Found {
-    fn add(&mut self, part: &Part) {
-        let record = &part.record;
-        self.samples += record.samples();
-        self.merged += record.merged();
-        self.first_merged = self.first_merged.or(record.first_merged());
-        self.repeated += record.repeated() + record.stale();
-        self.saturated += record.saturated();
-        self.new_readings_rate = self.new_readings_rate.or(record.new_readings_rate());
-        self.spikes += part.spikes.len();
-        self.in_bursts += Spike::bursts(&part.spikes).0;
-        self.first_spike = self.first_spike.or(part.spikes.first().copied());
-    }
-
-    /// Counts long intervals, also that which begins `before` the record, s.
-    fn add_long(&mut self, record: &Record, before: Option<f64>) {
-        let pairs = record.segments.iter().flat_map(|segment| segment.times().windows(2));
-        let mut intervals: Vec<(f64, f64)> = pairs.map(|pair| (pair[1] - pair[0], pair[1])).collect();
-        let first = record.segments.first().and_then(|segment| segment.times().first());
-        intervals.extend(before.zip(first).map(|(before, first)| (first - before, *first)));
-        let mut lengths: Vec<f64> = intervals.iter().map(|(length, _)| *length).collect();
-        if lengths.is_empty() {
-            return;
-        }
-        let middle = lengths.len() / 2;
-        let usual = *lengths.select_nth_unstable_by(middle, f64::total_cmp).1;
-        let long = || intervals.iter().filter(|(length, _)| *length > LONG * usual);
-        self.long += long().count();
-        let first = long().map(|(_, end)| *end).reduce(f64::min);
-        self.first_long = self.first_long.or(first);
     }
 }

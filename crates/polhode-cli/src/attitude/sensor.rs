@@ -2,7 +2,7 @@
 
 use clap::Args;
 use polhode::record::Record;
-use polhode::strapdown::{NOISE_SAMPLES, Sensor, noise};
+use polhode::strapdown::{Findings, Sensor};
 use polhode_files::numbers::not_negative;
 
 /// Standard deviations of the errors of the sensor.
@@ -45,12 +45,8 @@ impl SensorArguments {
         if let Some(sigma) = self.noise {
             return Noise { sigma, by: NoiseBy::Flag };
         }
-        let longest = record.segments.iter().max_by_key(|segment| segment.times().len());
-        let found = longest.map_or(0.0, |segment| noise(segment.times(), segment.rates()));
-        let rounding = record.rounding(&record.quanta()).sqrt();
-        let is_enough = longest.is_some_and(|segment| segment.times().len() >= NOISE_SAMPLES);
-        let by = if is_enough { NoiseBy::Record } else { NoiseBy::Nothing };
-        Noise { sigma: found.max(rounding), by }
+        let (sigma, is_enough) = Findings::noise(record);
+        Noise { sigma, by: if is_enough { NoiseBy::Record } else { NoiseBy::Nothing } }
     }
 
     pub(super) fn sensor(&self, noise: Noise) -> Sensor {

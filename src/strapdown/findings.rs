@@ -1,0 +1,147 @@
+//! What is found among the readings that become attitudes, in the words of the command and of the Python package.
+
+use super::{Kind, NOISE_SAMPLES, Rule, noise};
+use crate::num::Shown;
+use crate::record::{Record, Spike};
+
+/// An interval in which a reading may be missing, in median intervals.
+const LONG: f64 = 1.5;
+
+/// What was left out of the readings of a record, part by part, and what the budgets of their attitudes do not hold.
+#[doc(hidden)]
+#[derive(Clone, Debug, Default)]
+pub struct Findings {
+    samples: usize,
+    merged: usize,
+    /// s.
+    first_merged: Option<f64>,
+    repeated: usize,
+    saturated: usize,
+    new_readings_rate: Option<f64>,
+    spikes: usize,
+    in_bursts: usize,
+    first_spike: Option<Spike>,
+    /// Intervals in which a reading may be missing, and the end of the first, s.
+    long: usize,
+    first_long: Option<f64>,
+}
+
+impl Findings {
+    /// Adds those of a part of a record, of which the `spikes` are left out.
+    pub fn add(&mut self, record: &Record, spikes: &[Spike]) {
+        self.samples += record.samples();
+        self.merged += record.merged();
+        self.first_merged = self.first_merged.or(record.first_merged());
+        self.repeated += record.repeated() + record.stale();
+        self.saturated += record.saturated();
+        self.new_readings_rate = self.new_readings_rate.or(record.new_readings_rate());
+        self.spikes += spikes.len();
+        self.in_bursts += Spike::bursts(spikes).0;
+        self.first_spike = self.first_spike.or(spikes.first().copied());
+    }
+
+    /// Counts long intervals, also that which begins `before` the part, s.
+    pub fn add_intervals(&mut self, record: &Record, before: Option<f64>) {
+        let pairs = record.segments.iter().flat_map(|segment| segment.times().windows(2));
+        let mut intervals: Vec<(f64, f64)> = pairs.map(|pair| (pair[1] - pair[0], pair[1])).collect();
+        let first = record.segments.first().and_then(|segment| segment.times().first());
+        intervals.extend(before.zip(first).map(|(before, first)| (first - before, *first)));
+        let mut lengths: Vec<f64> = intervals.iter().map(|(length, _)| *length).collect();
+        if lengths.is_empty() {
+            return;
+        }
+        let middle = lengths.len() / 2;
+        let usual = *lengths.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let long = || intervals.iter().filter(|(length, _)| *length > LONG * usual);
+        self.long += long().count();
+        let first = long().map(|(_, end)| *end).reduce(f64::min);
+        self.first_long = self.first_long.or(first);
+    }
+
+    /// Number of samples that are left.
+    pub fn samples(&self) -> usize {
+        self.samples
+    }
+
+    /// Number of samples at the end of the sensor's range.
+    pub fn saturated(&self) -> usize {
+        self.saturated
+    }
+
+    /// Why readings of this kind, of which `unread` rows cannot be read, tell no attitude: of all but rates each one counts.
+    pub fn lost(&self, kind: Kind, unread: usize) -> Option<String> {
+        let (count, what) = match (unread, self.merged, self.repeated) {
+            _ if kind == Kind::Rate => return None,
+            (0, 0, 0) => return None,
+            (0, 0, count) => (count, "rows repeat the reading before"),
+            (0, count, _) => (count, "rows have the time of the row before"),
+            (count, ..) => (count, "rows cannot be read"),
+        };
+        Some(format!("{count} {what}; of {kind}s each one counts"))
+    }
+
+    /// What was left out or changed, or may be missing; a `row` is a line of a file, or a row of an array.
+    pub fn warnings(&self, row: &str) -> Vec<String> {
+        let mut warnings = Vec::new();
+        if self.merged > 0 {
+            let first = self.first_merged.map_or(String::new(), |t| format!(", the first at {} s", Shown(t)));
+            let merged = self.merged;
+            warnings.push(format!(
+                "{merged} rows have the time of the row before{first}: their rates are averaged"
+            ));
+        }
+        if self.repeated > 0 {
+            let new = |hz: f64| format!(", {hz:.4} new ones a second");
+            let (repeated, rate) = (self.repeated, self.new_readings_rate.map_or(String::new(), new));
+            warnings.push(format!("{repeated} rows repeat the reading before and are left out{rate}"));
+        }
+        if let Some(Spike { line, time, .. }) = self.first_spike {
+            let bursts = match self.in_bursts {
+                0 => String::new(),
+                count => format!(", {count} of them in bursts"),
+            };
+            let (spikes, time) = (self.spikes, Shown(time));
+            warnings
+                .push(format!("{spikes} spikes are left out{bursts}, the first at {row} {line} ({time} s)"));
+        }
+        if let Some(first) = self.first_long {
+            let (long, first) = (self.long, Shown(first));
+            warnings.push(format!(
+                "{long} intervals are longer than {LONG} usual ones, the first ends at {first} s: the turn of a row that is missing there is \
+                 not in the attitude"
+            ));
+        }
+        if self.saturated > 0 {
+            let saturated = self.saturated;
+            warnings.push(format!("{saturated} samples at the end of the sensor's range are left out"));
+        }
+        warnings
+    }
+
+    /// White noise of a reading by the longest segment, of digital readings with that of their steps; and whether there are enough samples
+    /// to tell it.
+    pub fn noise(record: &Record) -> (f64, bool) {
+        let longest = record.segments.iter().max_by_key(|segment| segment.times().len());
+        let found = longest.map_or(0.0, |segment| noise(segment.times(), segment.rates()));
+        let rounding = record.rounding(&record.quanta()).sqrt();
+        (found.max(rounding), longest.is_some_and(|segment| segment.times().len() >= NOISE_SAMPLES))
+    }
+
+    /// Of too few samples to tell their noise: which deviation is without it, and what states it.
+    pub fn without_noise(sigma: &str, noise: &str) -> String {
+        format!(
+            "fewer than {NOISE_SAMPLES} samples: their noise cannot be found, and {sigma} is without it; give {noise}"
+        )
+    }
+
+    /// Of so few samples that one polynomial of the `rule` goes through all of them.
+    pub fn without_truncation(rule: Rule, samples: usize) -> Option<String> {
+        let through = if let Rule::Magnus(magnus) = rule { magnus.samples() } else { 2 };
+        (2..=through).contains(&samples).then(|| {
+            format!(
+                "one polynomial goes through all {samples} samples: how far the motion between them is from it is not known, and not in the \
+                 truncation"
+            )
+        })
+    }
+}
