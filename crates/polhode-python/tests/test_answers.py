@@ -339,3 +339,14 @@ def test_every_kind_of_file_is_read(tmp_path):
     ]:
         with pytest.raises(PolhodeError, match=words):
             call()
+
+
+def test_one_record_of_a_carrier_is_not_two():
+    t, random = np.arange(1000) * 0.01, np.random.default_rng(1)
+    rates = polhode.FreeMotion([0.02, 0.03, 0.04], [1, 3, 2]).at(t).omega + random.normal(0, 1e-3, (1000, 3))
+    one = (t, rates)
+    says = "the record of {} has the times and rates of that of carrier: "
+    with pytest.raises(PolhodeError, match=says.format("carrier and proof body")):
+        polhode.fit_carrier(one, proof=one, proof_body=[0.015, 0.004, 0.016])
+    with pytest.raises(PolhodeError, match=says.format("carrier and object")):
+        polhode.fit_carrier(one, object=one)

@@ -26,6 +26,17 @@ pub enum CarrierError {
         /// Why.
         error: Box<FitError>,
     },
+    /// Two records are one.
+    #[error(
+        "the record of {attached} has the times and rates of that of {before}: with another body on it the carrier tumbles in another way; \
+         give each its own record"
+    )]
+    Same {
+        /// What is said to have tumbled.
+        attached: Attached,
+        /// What is said of the record before.
+        before: Attached,
+    },
     /// The body turns by so much between samples that a record has no weak equations.
     #[error(
         "the samples of the record of {attached} are too far apart for a joint fit: record so fast that the body turns by less than a tenth of a turn \

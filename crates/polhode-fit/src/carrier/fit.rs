@@ -52,7 +52,7 @@ use crate::thresholds::noise::SURE;
 /// ```
 ///
 /// # Errors
-/// A record that cannot be fitted; nothing that gives a size, as a proof body too light for the records; wheels of only some of the
+/// A record that cannot be fitted, or that is given twice; nothing that gives a size, as a proof body too light for the records; wheels of only some of the
 /// records, of different axes, or with a negative moment; records that contradict each other so much that they leave the size open.
 pub fn fit_carrier(records: &CarrierRecords, settings: &Settings) -> Result<CarrierEstimate, CarrierError> {
     let beforehand = [
@@ -62,6 +62,9 @@ pub fn fit_carrier(records: &CarrierRecords, settings: &Settings) -> Result<Carr
     ];
     if let Some((name, _)) = beforehand.into_iter().find(|(_, given)| *given) {
         return Err(CarrierError::Beforehand { name });
+    }
+    if let Some((attached, before)) = records.repeated() {
+        return Err(CarrierError::Same { attached, before });
     }
     check_wheels(records)?;
     let sensor = sensor_columns(&settings.sensor, 1.0);

@@ -547,6 +547,14 @@ fn what_gives_no_size_is_refused() {
     let error = fit_carrier(&CarrierRecords::new(axis.record(0, 1.0, &mut random)), &settings).unwrap_err();
     let text = error.to_string();
     assert!(text.starts_with("the record of carrier: the record does not determine the tensor"), "{text}");
+    // one record for two, also as a part of the other
+    let [one, other] = [0, 1].map(|k| plain.record(k, 1.0, &mut random));
+    let both = other.join(one.clone());
+    for (first, second) in [(&one, &one), (&one, &both), (&both, &one)] {
+        let records = CarrierRecords::new(first.clone()).with_proof(second.clone(), proof);
+        let same = CarrierError::Same { attached: Proof, before: Nothing };
+        assert_eq!(fit_carrier(&records, &settings), Err(same));
+    }
 }
 
 #[test]
