@@ -142,7 +142,7 @@ impl Body {
                 return Err(refused(reason));
             }
             if let Some(name) = named.as_ref().map(|named| named.name) {
-                heard(inertia.py(), || bodies::check_size("inertia", name))?;
+                heard(inertia.py(), move || bodies::check_size("inertia", name))?;
             }
         }
         for Wheel(wheel) in wheels {
@@ -244,7 +244,8 @@ fn by_name(py: Python<'_>, text: &str) -> PyResult<Body> {
         let body = named.body().map_err(refused)?;
         return Ok(Body { body, named: Some(Box::new(named)), sizeless: None, raised: Vec::new() });
     }
-    if let Some((inertia, wheels)) = heard(py, || bodies::inertia("body", text))? {
+    let name = text.to_string();
+    if let Some((inertia, wheels)) = heard(py, move || bodies::inertia("body", &name))? {
         if !wheels.iter().all(WheelAtStart::is_held) {
             return Err(refused(format!(
                 "body: '{text}': the momentum of a wheel that is free or driven depends on the start; give it as Wheel(...).free(omega)"

@@ -1,6 +1,7 @@
 //! Every file that the command reads: models, bodies, meshes, trajectories, records and times.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use polhode::inertia;
 use polhode_files::error::hearing;
@@ -13,6 +14,7 @@ use polhode_files::{ColumnNames, Error, ReadOptions, SignedAxes, bodies, given, 
 use pyo3::prelude::*;
 
 use crate::arrays::array;
+use crate::calm::aside;
 use crate::columns;
 use crate::error::{refused, warn};
 use crate::links::{Link, Links};
@@ -20,9 +22,12 @@ use crate::masses::{MassProperties, amount, closing};
 use crate::tables::{Rows, record_of, trajectories};
 use crate::units::{named_length, named_rate, named_time, positive, share};
 
-/// What `work` finds without the interpreter; its remarks are Python warnings.
-pub(crate) fn heard<T: Send>(py: Python<'_>, work: impl FnOnce() -> Result<T, Error> + Send) -> PyResult<T> {
-    let (found, remarks) = py.detach(|| hearing(work));
+/// What `work` finds while Ctrl-C is listened for; its remarks are Python warnings.
+pub(crate) fn heard<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce() -> Result<T, Error> + Send + 'static,
+) -> PyResult<T> {
+    let (found, remarks) = aside(py, move |_| hearing(work))?;
     remarks.iter().try_for_each(|remark| warn(py, remark))?;
     found.map_err(refused)
 }
@@ -130,6 +135,7 @@ pub(crate) fn read<'py>(
         Rows::Text(_) if matches!(kind, Kind::Trajectory | Kind::Record | Kind::Table) => PathBuf::new(),
         Rows::Text(_) => return Err(refused("kind: columns in memory are a trajectory or a record")),
     };
+    let rows = Arc::new(rows);
     let about_meshes = [
         mass.is_some(),
         density.is_some(),
@@ -179,7 +185,7 @@ pub(crate) fn read<'py>(
     };
     match kind {
         Kind::Model(language) => {
-            let found = heard(py, || {
+            let found = heard(py, move || {
                 let text = polhode_files::read(&path, "name a URDF, MJCF or SDF file")?;
                 let language = language.unwrap_or_else(|| bodies::language("xml", &text));
                 robots::read(language, &path, &text, root.as_deref())
@@ -188,11 +194,11 @@ pub(crate) fn read<'py>(
         }
         Kind::Json => {
             let found =
-                heard(py, || given::from_json(&path, &polhode_files::read(&path, "name a JSON file")?))?;
+                heard(py, move || given::from_json(&path, &polhode_files::read(&path, "name a JSON file")?))?;
             links(py, found)
         }
         Kind::Parts => {
-            let found = heard(py, || bodies::parts(&path))?;
+            let found = heard(py, move || bodies::parts(&path))?;
             mass_properties(py, found)
         }
         Kind::Mesh => {
@@ -204,13 +210,14 @@ pub(crate) fn read<'py>(
                 .with_shell(shell.map(|shell| positive("shell", shell)).transpose()?)
                 .with_weld(weld.map(|weld| positive("weld", weld)).transpose()?)
                 .with_group(group);
-            let found = heard(py, || options.body(&path, amount))?;
+            let found = heard(py, move || options.body(&path, amount))?;
             mass_properties(py, found)
         }
         Kind::Record => record_of(py, &rows, &table()?),
         Kind::Trajectory => {
             let options = table()?;
-            let found = heard(py, || rows.trajectory(&options))?;
+            let (own, asked) = (Arc::clone(&rows), options.clone());
+            let found = heard(py, move || own.trajectory(&asked))?;
             trajectories(py, &rows, &options, found)
         }
         Kind::Times => {
@@ -220,13 +227,14 @@ pub(crate) fn read<'py>(
                 epoch: None,
                 asked: Asked { file: "path".into(), column: "columns" },
             };
-            let found = heard(py, || source.read()?.collect::<Result<Vec<f64>, Error>>())?;
+            let found = heard(py, move || source.read()?.collect::<Result<Vec<f64>, Error>>())?;
             let n = found.len();
             array(py, found, &[n])
         }
         Kind::Table => {
             let options = table()?;
-            let found = py.detach(|| hearing(|| rows.trajectory(&options)));
+            let (own, asked) = (Arc::clone(&rows), options.clone());
+            let found = aside(py, move |_| hearing(|| own.trajectory(&asked)))?;
             let is_trajectory = |found: &trajectory::FoundTrajectory| {
                 found.bodies.iter().any(|(_, rows)| rows.attitude.is_some() || rows.momentum.is_some())
             };

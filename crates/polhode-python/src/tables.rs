@@ -1,6 +1,7 @@
 //! Trajectories and records from tables.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use polhode::audit::{self, Attitudes, Convention};
 use polhode::record;
@@ -193,10 +194,11 @@ fn check_times(options: &ReadOptions, read_as: &ReadAs) -> PyResult<()> {
 
 pub(crate) fn record_of<'py>(
     py: Python<'py>,
-    rows: &Rows,
+    rows: &Arc<Rows>,
     options: &ReadOptions,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let found = heard(py, || rows.record(options))?;
+    let (own, asked) = (Arc::clone(rows), options.clone());
+    let found = heard(py, move || own.record(&asked))?;
     check_times(options, &found.read_as)?;
     if let Some(first) = found.skipped.first() {
         let (count, samples) = (found.skipped.len(), found.record.samples());
