@@ -6,7 +6,7 @@ use polhode::rotation::Quat;
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::{PyDict, PyFloat, PyInt};
+use pyo3::types::{PyBool, PyBytes, PyDict, PyFloat, PyInt, PyString};
 
 use crate::error::refused;
 
@@ -23,6 +23,9 @@ impl Numbers {
         if value.is_exact_instance_of::<PyFloat>() || value.is_exact_instance_of::<PyInt>() {
             let number =
                 value.extract().map_err(|_| refused(format!("{name}: outside the range of a double")))?;
+            if value.is_exact_instance_of::<PyInt>() && !value.eq(number)? {
+                return Err(no_double(name, value, number));
+            }
             return Ok(Numbers { name, shape: Vec::new(), values: vec![number] });
         }
         // an array of doubles one after the other needs nothing made of it; between those of a field of a structured array there may be
@@ -120,12 +123,89 @@ fn as_floats<'py>(name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Bou
     let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
     match kind.as_str() {
         // contiguous in the order of C, aligned, and no subclass
-        "f" | "i" | "u" | "O" => require.call1((array, "float64", "CAE")).map_err(not_numbers),
+        "f" | "i" | "u" | "O" => {
+            check_exact(name, &array, &kind, require)?;
+            require.call1((array, "float64", "CAE")).map_err(not_numbers)
+        }
         _ => {
             let kind = array.getattr("dtype")?.str()?;
             Err(refused(format!("{name}: an array of {kind}; it must hold real numbers")))
         }
     }
+}
+
+/// Refuses an array in which an integer would change as a double, or which holds texts or truth values among objects.
+fn check_exact(
+    name: &'static str,
+    array: &Bound<'_, PyAny>,
+    kind: &str,
+    require: &Bound<'_, PyAny>,
+) -> PyResult<()> {
+    let is_short = || Ok::<_, PyErr>(array.getattr("dtype")?.getattr("itemsize")?.extract::<usize>()? < 8);
+    let unreadable = || refused(format!("{name}: numpy makes no array of numbers of it"));
+    let outside = || refused(format!("{name}: outside the range of a double"));
+    match kind {
+        "i" if !is_short()? => {
+            let whole = require.call1((array, "int64", "CAE"))?;
+            let whole: PyReadonlyArrayDyn<'_, i64> = whole.extract().map_err(|_| unreadable())?;
+            let changed = whole.as_array().iter().copied().find(|n| (*n as f64) as i128 != i128::from(*n));
+            changed.map_or(Ok(()), |n| Err(no_double(name, n, n as f64)))
+        }
+        "u" if !is_short()? => {
+            let whole = require.call1((array, "uint64", "CAE"))?;
+            let whole: PyReadonlyArrayDyn<'_, u64> = whole.extract().map_err(|_| unreadable())?;
+            let changed = whole.as_array().iter().copied().find(|n| (*n as f64) as u128 != u128::from(*n));
+            changed.map_or(Ok(()), |n| Err(no_double(name, n, n as f64)))
+        }
+        "O" => {
+            for one in array.getattr("flat")?.try_iter()? {
+                let one = one?;
+                if one.is_instance_of::<PyString>()
+                    || one.is_instance_of::<PyBytes>()
+                    || one.is_instance_of::<PyBool>()
+                {
+                    let found = one.get_type().name()?;
+                    return Err(refused(format!("{name}: not an array of numbers: it holds a {found}")));
+                }
+                // also the integers of numpy
+                if !one.is_exact_instance_of::<PyFloat>()
+                    && one.hasattr("__index__")?
+                    && let Ok(whole) = one.call_method0("__index__")
+                {
+                    let number: f64 = whole.extract().map_err(|_| outside())?;
+                    if !whole.eq(number)? {
+                        return Err(no_double(name, whole, number));
+                    }
+                }
+            }
+            Ok(())
+        }
+        _ => Ok(()),
+    }
+}
+
+/// The refusal of an integer that would be another number, the nearest double, as by nanoseconds since 1970.
+fn no_double(name: &'static str, integer: impl std::fmt::Display, nearest: f64) -> PyErr {
+    refused(format!(
+        "{name}: {integer} is no double, and the nearest is {nearest:.0}; subtract a whole number first, as t - t[0] of counts since 1970, or give \
+         floats"
+    ))
+}
+
+/// The texts of a list of integers, with all their digits; `None` of what else there is.
+pub(crate) fn integers(value: &Bound<'_, PyAny>) -> PyResult<Option<Vec<String>>> {
+    // masked values have no number
+    if value.hasattr("filled")? {
+        return Ok(None);
+    }
+    // what is no array is told where numbers are made of it
+    let Ok(array) = value.py().import("numpy")?.call_method1("asarray", (value,)) else { return Ok(None) };
+    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
+    let dimensions: usize = array.getattr("ndim")?.extract()?;
+    if dimensions != 1 || !matches!(kind.as_str(), "i" | "u") {
+        return Ok(None);
+    }
+    array.call_method1("astype", ("str",))?.call_method0("tolist")?.extract().map(Some)
 }
 
 /// Where the scalar of a quaternion stands.

@@ -5,8 +5,23 @@ use std::fmt::Write;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
-use crate::arrays::Numbers;
+use crate::arrays::{Numbers, integers};
 use crate::error::refused;
+
+/// What stands in a column.
+enum Cells {
+    Numbers(Vec<f64>),
+    Integers(Vec<String>),
+}
+
+impl Cells {
+    fn len(&self) -> usize {
+        match self {
+            Cells::Numbers(numbers) => numbers.len(),
+            Cells::Integers(texts) => texts.len(),
+        }
+    }
+}
 
 /// The table as the text of a CSV, whose numbers have all their digits; `None` of what is no table.
 pub(crate) fn text(value: &Bound<'_, PyAny>) -> PyResult<Option<String>> {
@@ -28,11 +43,16 @@ pub(crate) fn text(value: &Bound<'_, PyAny>) -> PyResult<Option<String>> {
         return Ok(None);
     };
     let columns = names.iter().map(|name| {
-        let column = Numbers::of("column", &value.get_item(PyString::new(py, name))?)?;
-        column.list().map_err(|error| refused(format!("{name}: {}", error.value(py))))
+        let column = value.get_item(PyString::new(py, name))?;
+        // a time in nanoseconds since 1970 has more digits than a double
+        if let Some(texts) = integers(&column)? {
+            return Ok(Cells::Integers(texts));
+        }
+        let column = Numbers::of("column", &column)?.list();
+        column.map(Cells::Numbers).map_err(|error| refused(format!("{name}: {}", error.value(py))))
     });
-    let columns = columns.collect::<PyResult<Vec<Vec<f64>>>>()?;
-    let rows = columns.first().map_or(0, Vec::len);
+    let columns = columns.collect::<PyResult<Vec<Cells>>>()?;
+    let rows = columns.first().map_or(0, Cells::len);
     if let Some(place) = columns.iter().position(|column| column.len() != rows) {
         return Err(refused(format!(
             "{}: an array of shape ({},); it must be of shape ({rows},), as {}",
@@ -47,7 +67,10 @@ pub(crate) fn text(value: &Bound<'_, PyAny>) -> PyResult<Option<String>> {
         text.push('\n');
         for (place, column) in columns.iter().enumerate() {
             let comma = if place > 0 { "," } else { "" };
-            let _ = write!(text, "{comma}{:?}", column[row]);
+            let _ = match column {
+                Cells::Numbers(numbers) => write!(text, "{comma}{:?}", numbers[row]),
+                Cells::Integers(texts) => write!(text, "{comma}{}", texts[row]),
+            };
         }
     }
     text.push('\n');

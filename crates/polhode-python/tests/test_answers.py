@@ -350,3 +350,44 @@ def test_one_record_of_a_carrier_is_not_two():
         polhode.fit_carrier(one, proof=one, proof_body=[0.015, 0.004, 0.016])
     with pytest.raises(PolhodeError, match=says.format("carrier and object")):
         polhode.fit_carrier(one, object=one)
+
+
+# in nanoseconds since 1970; the nearest double is 21 ns away
+COUNT = 1_700_000_000_123_456_789
+
+
+@pytest.mark.parametrize(
+    "t",
+    [
+        COUNT + np.arange(4) * 10_000_000,
+        (COUNT + np.arange(4) * 10_000_000).astype("uint64"),
+        np.array([COUNT, COUNT + 10_000_000], dtype=object),
+        np.array([np.int64(COUNT), 1.5], dtype=object),
+        [2**53 + 1, 2**64 + 1],
+        2**53 + 1,
+    ],
+)
+def test_integers_that_are_no_doubles_are_refused(t):
+    first = np.ravel(np.asarray(t, dtype=object))[0]
+    with pytest.raises(PolhodeError, match=f"^t: {first} is no double, and the nearest is {int(float(first))}; subtract"):
+        polhode.FreeMotion([1, 2, 3], OMEGA).at(t)
+
+
+def test_integers_that_are_doubles_are_numbers():
+    beyond = np.array([2**60, 2**61, 3 * 2**59])
+    for moments in (beyond, beyond.astype("uint64"), beyond.astype(object), np.array([1, 2, 2.5], dtype=object), np.arange(2, 5, dtype="int8")):
+        given = polhode.FreeMotion(moments, OMEGA).at(T).attitude
+        assert_array_equal(given, polhode.FreeMotion(np.asarray(moments, dtype=float), OMEGA).at(T).attitude)
+    at = polhode.FreeMotion([1, 2, 3], OMEGA).at
+    for text in ("1.5", b"1.5", True):
+        with pytest.raises(PolhodeError, match=f"t: not an array of numbers: it holds a {type(text).__name__}"):
+            at(np.array([0.0, text], dtype=object))
+
+
+def test_counts_since_1970_keep_their_digits_in_a_table():
+    rates = {f"w{axis} (rad/s)": np.sin(np.arange(40) + k) for k, axis in enumerate("xyz")}
+    # 1 ns beside the whole microsecond
+    counts = COUNT + np.arange(40) * 10_000_001
+    for t in (counts, counts.astype("uint64"), counts.tolist()):
+        record = polhode.read({"t": t, **rates}, kind="record", time_unit="ns")
+        assert_allclose(record.t, np.arange(40) * 10_000_001e-9, rtol=1e-15)
