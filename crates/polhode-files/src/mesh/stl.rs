@@ -86,7 +86,8 @@ fn ascii(reader: impl BufRead) -> Result<Surface, MeshFileError> {
             Some("endsolid") => closed = true,
             Some("solid") => {
                 closed = false;
-                mesh.begin_group(words.next().unwrap_or_default());
+                // all that follows is the name, which programs write with blanks
+                mesh.begin_group(&words.collect::<Vec<_>>().join(" "));
             }
             Some("facet" | "outer" | "endloop") | None => {}
             Some(_) => return Err(syntax("a line of an ASCII STL")),

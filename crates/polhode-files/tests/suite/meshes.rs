@@ -150,6 +150,26 @@ fn a_triangle_of_an_obj_belongs_to_its_object_and_to_all_its_groups() {
     assert_eq!(areas, [Some(3.0), Some(1.0), Some(9.0), Some(6.0), Some(12.0), None]);
 }
 
+/// The name of a solid is all that follows the word; solids of one name are one group.
+#[test]
+fn solids_of_an_ascii_stl_have_their_whole_names() {
+    let facet = |size: u32| {
+        format!(
+            "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex {size} 0 0\nvertex 0 1 0\nendloop\nendfacet\n"
+        )
+    };
+    let solid = |name: &str, size| format!("solid {name}\n{}endsolid {name}\n", facet(size));
+    let text = [("left arm", 2), ("left  leg ", 4), ("left", 8), ("left arm", 16)];
+    let text: String = text.into_iter().map(|(name, size)| solid(name, size)).collect();
+    let surface = mesh::stl(text.as_bytes()).unwrap();
+    assert_eq!(surface.groups().collect::<Vec<_>>(), ["left arm", "left leg", "left"]);
+    let area = |name: &str| {
+        let group = surface.group(name)?;
+        Some(group.triangles().map(|[a, b, c]| (b - a).cross(&(c - a)).norm() / 2.0).sum::<f64>())
+    };
+    assert_eq!(["left arm", "left leg", "left", "arm"].map(area), [Some(9.0), Some(2.0), Some(4.0), None]);
+}
+
 #[test]
 fn a_line_without_end_is_refused() {
     let long = "line 2 is longer than 1048576 bytes; is this the right file?";
