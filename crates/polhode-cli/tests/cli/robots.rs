@@ -130,6 +130,30 @@ fn a_world_without_links_is_told_by_what_it_holds() {
     assert!(include.code == 1 && include.err.contains(says), "{include:?}");
 }
 
+/// Links of several models are named with their models, here as by `polhode inertia`.
+#[test]
+fn a_link_of_one_of_several_models_is_named_with_its_model() {
+    let scratch = Scratch::new("models-scoped");
+    let link = |name: &str, last: &str| {
+        let tensor = format!("<inertia><ixx>1</ixx><iyy>2</iyy><izz>{last}</izz></inertia>");
+        format!(
+            "<model name='{name}'><link name='base'><inertial><mass>1</mass>{tensor}</inertial></link></model>"
+        )
+    };
+    let world =
+        format!("<sdf version='1.4'><world name='w'>{}{}</world></sdf>", link("a", "2.5"), link("b", "3"));
+    let file = scratch.file("world.sdf", world);
+    let start = "--omega 0.1,2,0.1 --format json";
+    let motion = |body: &str| run(&format!("motion {body} {start}"));
+    for (name, moments) in [("a::base", "1,2,2.5"), ("b::base", "1,2,3")] {
+        let (named, typed) =
+            (motion(&format!("--body {file}:{name}")), motion(&format!("--inertia {moments},0,0,0")));
+        assert_eq!((named.code, named.out), (0, typed.out), "{name}: {}", named.err);
+    }
+    let unknown = motion(&format!("--body {file}:a::bass"));
+    assert!(unknown.code == 2 && unknown.err.contains("a::base"), "{}", unknown.err);
+}
+
 #[test]
 fn a_repaired_copy_differs_by_its_tensors_alone() {
     let scratch = Scratch::new("repair");

@@ -75,10 +75,12 @@ pub fn check_size(flag: &str, name: &str) -> Result<(), Error> {
 
 fn chosen<'t>(flag: &str, text: &'t str) -> Result<Option<Chosen<'t>>, Error> {
     let whole = Path::new(text);
-    let (path, link) = match text.rsplit_once(':') {
+    // the name of a link holds colons too where models stand in others
+    let mut parts = text.rmatch_indices(':').map(|(at, _)| (Path::new(&text[..at]), &text[at + 1..]));
+    let (path, link) = match parts.find(|(file, _)| file.is_file()) {
         _ if whole.is_file() => (whole, None),
-        Some((file, link)) if Path::new(file).is_file() => (Path::new(file), Some(link)),
-        _ => return Ok(None),
+        Some((file, link)) => (file, Some(link)),
+        None => return Ok(None),
     };
     let mut bodies = tensors(flag, path, link)?;
     if let Some(link) = link {

@@ -222,6 +222,35 @@ mod tests {
         assert_eq!(said, [(true, true), (false, false)], "{found:?}");
     }
 
+    /// A saved world names its links again, also with their models before them; the bodies are those of the models.
+    #[test]
+    fn the_state_of_a_world_of_sdf_names_no_further_links() {
+        let model = |name: &str, links: &str| format!("<model name='{name}'>{links}</model>");
+        let body = |name: &str| format!("<link name='{name}'>{INERTIAL}</link>");
+        let pose = |name: &str| format!("<link name='{name}'><pose>0 0 1 0 0 0</pose></link>");
+        let names = |models: &str, state: &str| -> Vec<String> {
+            let plugin = "<plugin name='p'><link>arm</link><model><link name='arm'/></model></plugin>";
+            let text = format!(
+                "<sdf version='1.4'><world name='w'>{models}{plugin}<state world_name='w'>{state}</state></world></sdf>"
+            );
+            let found = defects(Language::Sdf, &text);
+            assert!(found.iter().all(|(_, defect)| defect.is_empty()), "{found:?}");
+            found.into_iter().map(|(name, _)| name).collect()
+        };
+        // one model needs no scope, whatever its state repeats
+        let one = model("robot", &(body("base") + &body("arm::hand")));
+        let state = model("robot", &(pose("base") + &pose("robot::arm::hand")));
+        assert_eq!(names(&one, &state), ["base", "arm::hand"]);
+        let two = one.clone() + &model("box", &body("base"));
+        assert_eq!(names(&two, &state), ["robot::base", "robot::arm::hand", "box::base"]);
+        // what only the state holds is said
+        let added = format!("<state><insertions>{}</insertions></state>", model("cup", &body("base")));
+        let text = format!("<world name='w'>{one}{added}</world>");
+        let found = defects(Language::Sdf, &text);
+        assert_eq!(found.len(), 3, "{found:?}");
+        assert!(found[2].1.contains("the models that a state adds are not read"), "{found:?}");
+    }
+
     #[test]
     fn a_pose_of_sdf_in_another_frame_is_a_defect_in_every_version() {
         let of = |attribute: &str| {

@@ -9,13 +9,18 @@ use super::{Given, is_massless, link, positive, writing};
 /// Every link, with the names of the models around it where there are several.
 pub(super) fn links(document: &Element) -> Vec<Given> {
     let mut found = Vec::new();
-    let models = document
-        .all()
-        .iter()
-        .filter(|element| element.tag == "model" && !element.children.is_empty())
-        .count();
-    collect(document, "", models > 1, &mut found);
+    collect(document, "", models(document) > 1, &mut found);
     found
+}
+
+/// Elements in which links are named that stand elsewhere.
+const NAMING: [&str; 2] = ["state", "plugin"];
+
+/// Models in which there is anything.
+fn models(element: &Element) -> usize {
+    let is_model = element.tag == "model" && !element.children.is_empty();
+    let inside = element.children.iter().filter(|child| !NAMING.contains(&child.tag.as_str()));
+    usize::from(is_model) + inside.map(models).sum::<usize>()
 }
 
 fn collect(element: &Element, scope: &str, scoped: bool, found: &mut Vec<Given>) {
@@ -33,8 +38,15 @@ fn collect(element: &Element, scope: &str, scoped: bool, found: &mut Vec<Given>)
                 }
                 found.push(given);
             }
-            // which names links again
-            "state" => {}
+            "state" => {
+                let all = child.all();
+                let added = all.iter().filter(|part| part.tag == "insertions" && !part.children.is_empty());
+                found.extend(added.map(|part| {
+                    let rule = "the models that a state adds are not read; put them into the world";
+                    link(&format!("{scope}insertions"), part, Err(part.error(rule)))
+                }));
+            }
+            naming if NAMING.contains(&naming) => {}
             "inertial" => found.push(link(scope, child, stated(child))),
             "include" if matches!(element.tag.as_str(), "sdf" | "world" | "model") => {
                 let uri = child.child("uri").and_then(|uri| uri.text.as_ref());
