@@ -1,5 +1,6 @@
 //! A shard on the disk: arrays, largest errors, failures, and the record that it is whole.
 
+use std::collections::BTreeMap;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -106,12 +107,18 @@ pub(super) fn commit(staging: Staging, shares: &Shares, mut record: Record) -> R
         staging.write(name, table.csv().as_bytes())?;
     }
     let arrays = [Some(ATTITUDES), record.identity.omegas.then_some(OMEGAS)].into_iter().flatten();
-    for name in tables.iter().map(|(name, _)| name.as_str()).chain(arrays) {
-        let sum = Checksum::of(staging.open(name)?).map_err(unexpected)?;
-        record.sha256.insert(name.into(), sum);
-    }
+    record.sha256 = checksums(&staging, tables.iter().map(|(name, _)| name.as_str()).chain(arrays))?;
     staging.write(MARK, record.sealed_text().map_err(unexpected)?.as_bytes())?;
     staging.commit()
+}
+
+/// The checksums of files of a folder in the making.
+pub(super) fn checksums<'n>(
+    staging: &Staging,
+    names: impl Iterator<Item = &'n str>,
+) -> Result<BTreeMap<String, String>, Error> {
+    let sum = |name: &str| Checksum::of(staging.open(name)?).map_err(unexpected);
+    names.map(|name| Ok((name.into(), sum(name)?))).collect()
 }
 
 impl Finished {

@@ -1,5 +1,6 @@
 //! `polhode gather`: the shards of an ensemble, made into the results of one run.
 
+use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -8,6 +9,7 @@ use polhode_files::error::{Error, unexpected};
 use polhode_files::npy;
 use polhode_pages::output::{MARK, Output, unwritable};
 
+use super::checksum::Checksum;
 use super::folder::{ERRORS, Finished, finished, record_of_results};
 use super::record::{Identity, Record};
 use super::reduce::{self, reduce};
@@ -26,8 +28,8 @@ const EXAMPLES: &str = "Examples:
 ///
 /// The shards that `polhode ensemble --shard K/N` has written stand in DIR/shards. They must be all of one run: of the same
 /// specification, seed, version and number of shards, with every file as its run wrote it (the run.toml beside it has the
-/// SHA-256). The results in DIR are those of the run without shards, to the last bit; the shards stay where they are, and may be
-/// removed then.
+/// SHA-256). The results in DIR are those of the run without shards, to the last bit, and their run.toml has the SHA-256 of
+/// each; the shards stay where they are, and may be removed then.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Gather {
@@ -70,19 +72,30 @@ impl Gather {
         let record = Record::of_shards(&records).ok_or_else(|| unexpected("no shards"))?;
         let results = Results::new(&reduced, &shares, record);
 
-        let mut outputs = Vec::new();
+        let (mut outputs, mut sums) = (Vec::new(), BTreeMap::new());
         if identity.attitudes {
-            outputs.push(self.joined(ATTITUDES, &mut arrays)?);
+            let (output, sum) = self.joined(ATTITUDES, &mut arrays)?;
+            outputs.push(output);
+            sums.insert(ATTITUDES.into(), sum);
         }
         if identity.omegas {
             let mut omegas = shards.iter().map(Finished::omegas).collect::<Result<Vec<_>, _>>()?;
-            outputs.push(self.joined(OMEGAS, &mut omegas)?);
-        }
-        for (name, content) in results.files()? {
-            let mut output = Output::to_file("gather", &self.folder.join(name))?;
-            output.write(&content)?;
+            let (output, sum) = self.joined(OMEGAS, &mut omegas)?;
             outputs.push(output);
+            sums.insert(OMEGAS.into(), sum);
         }
+        let mut write = |name: &str, content: &str| {
+            let mut output = Output::to_file("gather", &self.folder.join(name))?;
+            output.write(content)?;
+            outputs.push(output);
+            Ok::<_, Error>(())
+        };
+        for (name, content) in results.files()? {
+            write(&name, &content)?;
+            let sum = Checksum::of(content.as_bytes()).map_err(unexpected)?;
+            sums.insert(name, sum);
+        }
+        write(MARK, &results.record(sums)?)?;
         // without its record a folder of results is not whole; the new one comes last
         let other = record_of_results(&self.folder)?.filter(Record::is_results);
         let remove = |name: &str| match std::fs::remove_file(self.folder.join(name)) {
@@ -111,20 +124,27 @@ impl Gather {
         said(&results, &shares, &identity, &self.folder)
     }
 
-    /// The array of all members, from those of the shards.
-    fn joined<const N: usize>(&self, name: &str, arrays: &mut [npy::Array<N>]) -> Result<Output, Error> {
+    /// The array of all members, from those of the shards, and its checksum.
+    fn joined<const N: usize>(
+        &self,
+        name: &str,
+        arrays: &mut [npy::Array<N>],
+    ) -> Result<(Output, String), Error> {
         let path = self.folder.join(name);
         let times = arrays.first().map_or(0, npy::Array::times);
         let members = arrays.iter().map(npy::Array::members).sum();
-        let mut output = Output::to_file("gather", &path)?;
-        output.write_bytes(&npy::head([times, members, N as u64]))?;
+        let (mut output, mut sum) = (Output::to_file("gather", &path)?, Checksum::new());
+        let head = npy::head([times, members, N as u64]);
+        output.write_bytes(&head)?;
+        sum.add(&head);
         for time in 0..times {
             for array in arrays.iter_mut() {
                 let bytes = array.read(time).map_err(|error| unwritable("gather", &path, &error))?;
                 output.write_bytes(bytes)?;
+                sum.add(bytes);
             }
         }
-        Ok(output)
+        Ok((output, sum.hexadecimal()))
     }
 
     /// Whether the shards belong together and none is missing.

@@ -19,7 +19,7 @@ use clap::{Args, ValueEnum};
 use polhode::num::Instructions;
 use polhode_files::error::{Error, tell, unexpected, warn};
 use polhode_files::npy;
-use polhode_pages::output::{Staging, emit};
+use polhode_pages::output::{MARK, Staging, emit};
 
 use crate::{cost, memory};
 pub(crate) use gather::Gather;
@@ -27,7 +27,7 @@ use record::{Identity, Record};
 use results::Results;
 use shard::Shard;
 use spec::Spec;
-use work::{ATTITUDES, Shares};
+use work::{ATTITUDES, OMEGAS, Shares};
 
 /// Bytes that a member takes while it is propagated, with a tensor of its own.
 const BYTES_OF_MEMBER: u64 = 264;
@@ -186,13 +186,18 @@ impl Ensemble {
             .map_err(|error| Error::Input(format!("{}: {error}", self.out.display())))?;
         let record = Record::new(spec, None, shares.draws, shares.failures.len() as u64);
         let results = Results::new(&reduced, &shares, record);
-        for (name, content) in results.files()? {
-            staging.write(&name, content.as_bytes())?;
+        let files = results.files()?;
+        for (name, content) in &files {
+            staging.write(name, content.as_bytes())?;
         }
         drop(attitudes);
         if !spec.attitudes {
             staging.remove(ATTITUDES)?;
         }
+        let arrays = [spec.attitudes.then_some(ATTITUDES), spec.omegas.then_some(OMEGAS)];
+        let names = files.iter().map(|(name, _)| name.as_str()).chain(arrays.into_iter().flatten());
+        let sums = folder::checksums(&staging, names)?;
+        staging.write(MARK, results.record(sums)?.as_bytes())?;
         staging.commit()?;
         said(&results, &shares, &identity, &self.out)?;
         match first_order::beside(spec, &reduced, &results.rows_shown()) {

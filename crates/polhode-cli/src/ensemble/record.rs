@@ -53,7 +53,7 @@ pub(super) struct Record {
     pub(super) profile: String,
     pub(super) target: String,
     pub(super) identity: Identity,
-    /// Of a shard: checksums of the files beside it, and under [`MARK`] of this record without that line.
+    /// Checksums of the files beside it, and under [`MARK`] of this record without that line.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(super) sha256: BTreeMap<String, String>,
     /// Columns and arrays of the files beside it.

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use polhode_files::error::{Error, unexpected};
 use polhode_pages::figure::{Curve, Figure, Scale};
-use polhode_pages::output::MARK;
 use polhode_pages::table::{Cell, Column, Table};
 
 use super::folder::failures_table;
@@ -16,7 +15,7 @@ use super::work::{ATTITUDES, OMEGAS, Shares};
 /// Rows of the summary that are shown at the end of a run.
 const SHOWN: usize = 12;
 
-/// The files of the results besides the arrays, with their contents; the record comes last.
+/// The files of the results besides the arrays, with their contents, and the record.
 pub(super) struct Results {
     summary: Table,
     tables: Vec<Table>,
@@ -58,14 +57,18 @@ impl Results {
         Self { summary, tables, figure, record }
     }
 
-    /// Names and contents, the record last.
+    /// Names and contents of what goes beside the arrays and the record.
     pub(super) fn files(&self) -> Result<Vec<(String, String)>, Error> {
         let tables = [&self.summary].into_iter().chain(&self.tables);
         let mut files: Vec<(String, String)> =
             tables.map(|table| (format!("{}.csv", table.name), table.csv())).collect();
         files.push((format!("{}.svg", self.figure.name), self.figure.svg()?));
-        files.push((MARK.into(), self.record.text().map_err(unexpected)?));
         Ok(files)
+    }
+
+    /// The record, with the checksums of all files beside it.
+    pub(super) fn record(&self, sha256: BTreeMap<String, String>) -> Result<String, Error> {
+        Record { sha256, ..self.record.clone() }.sealed_text().map_err(unexpected)
     }
 
     /// Numbers of the rows that are shown.

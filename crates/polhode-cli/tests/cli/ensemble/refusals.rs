@@ -293,7 +293,7 @@ fn resealed(record: &str, name: &str, sum: &str) -> String {
     bare + &format!("\"run.toml\" = \"{seal}\"\n")
 }
 
-fn sha256(bytes: &[u8]) -> String {
+pub(super) fn sha256(bytes: &[u8]) -> String {
     sha2::Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 

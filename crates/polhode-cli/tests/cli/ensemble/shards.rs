@@ -3,6 +3,7 @@
 use std::fs;
 use std::process::Command;
 
+use super::refusals::sha256;
 use super::{EXACT, STEPPED, contents, done};
 use crate::harness::{Scratch, names, polhode, words};
 
@@ -46,6 +47,29 @@ fn any_number_of_shards_and_threads_gives_the_bits_of_one_run() {
             done(&format!("gather {out} --threads 1"), &scratch);
             assert!(contents(&scratch.0.join(&out)) == whole, "{name}: {count} shards again");
         }
+    }
+}
+
+/// The record of results has the checksum of each file beside it, and of itself without that line.
+#[test]
+fn results_have_the_checksums_of_their_files() {
+    let scratch = Scratch::new("ensemble-sums");
+    for (name, spec) in [("exact", EXACT.to_string()), ("bare", format!("{EXACT}[output]\narrays = []\n"))] {
+        scratch.file("spec.toml", spec);
+        done(&format!("ensemble spec.toml --out {name}"), &scratch);
+        let mut files = contents(&scratch.0.join(name));
+        let record = String::from_utf8(files.remove("run.toml").unwrap()).unwrap();
+        let told =
+            record.lines().filter(|line| line.split_once(" = \"").is_some_and(|(_, sum)| sum.len() == 65));
+        let told: Vec<&str> = told.filter(|line| line.starts_with('"')).collect();
+        assert_eq!(told.len(), files.len() + 1, "{told:?}");
+        let line = |name: &str, bytes: &[u8]| format!("\"{name}\" = \"{}\"", sha256(bytes));
+        for (name, bytes) in &files {
+            assert!(told.contains(&line(name, bytes).as_str()), "{name}: {told:?}");
+        }
+        let bare = record.lines().filter(|line| !line.starts_with("\"run.toml\" = "));
+        let bare: String = bare.map(|line| format!("{line}\n")).collect();
+        assert!(told.contains(&line("run.toml", bare.as_bytes()).as_str()), "{told:?}");
     }
 }
 
