@@ -74,8 +74,9 @@ Examples:
 /// attitudes.npy (times x members x 4), omegas.npy (times x members x 3) and run.toml; with an [event] passages.csv, when it
 /// first happens to each member. Of free bodies in exact motion the spread to first order is printed beside that of the members.
 ///
-/// With --shard K/N, or in a Slurm array or under an MPI launcher, only the K-th of N parts of the members is run. Its results,
-/// a shard, go to DIR/shards, and `polhode gather DIR` makes those of all members. A shard that is finished is not run again.
+/// With --shard K/N, or in a Slurm array or under an MPI launcher, only the K-th of N parts of the members is run; of processes that
+/// srun starts side by side each needs --shard. Its results, a shard, go to DIR/shards, and `polhode gather DIR` makes those
+/// of all members. A shard that is finished is not run again.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Ensemble {

@@ -19,6 +19,12 @@ const LAUNCHERS: [[&str; 2]; 2] =
 /// What Slurm sets for the task of an array.
 const TASK: &str = "SLURM_ARRAY_TASK_ID";
 
+/// How many tasks `srun` has started beside each other, which also an array may do; a batch script itself has it not, whatever its
+/// `SLURM_NTASKS` says.
+const STEP: &str = "SLURM_STEP_NUM_TASKS";
+/// The place of a process of PMIx among all, from 0; how many there are stands in no variable.
+const PMIX: &str = "PMIX_RANK";
+
 impl Shard {
     /// All members.
     pub(super) const WHOLE: Self = Self { number: 1, count: 1 };
@@ -80,6 +86,20 @@ impl Shard {
             if shard != Self::WHOLE && told.iter().all(|(other, _)| *other != shard) {
                 told.push((shard, name));
             }
+        }
+        let is_of_mpi = told.iter().any(|(_, name)| *name != TASK);
+        let unshared = match (number(STEP)?, number(PMIX)?) {
+            _ if is_of_mpi => None,
+            (Some(tasks), _) if tasks > 1 => Some((STEP, tasks)),
+            (None, Some(rank)) if rank > 0 => Some((PMIX, rank)),
+            _ => None,
+        };
+        if let Some((name, value)) = unshared {
+            let rule =
+                "several processes are started, and all would run the same members into the same files";
+            let remedy = "give each its part by --shard K/N, with srun as in bash -c 'polhode ensemble SPEC.toml --out DIR --shard \
+                          $((SLURM_PROCID + 1))/$SLURM_NTASKS', or --shard 1/1 if each has an --out of its own";
+            return Err(Error::input(name, &value.to_string(), rule, remedy));
         }
         match told[..] {
             [] => Ok(None),
@@ -202,5 +222,29 @@ mod tests {
         refused(&[("PMI_RANK", "4"), ("PMI_SIZE", "4")], "ranks count from 0");
         let both = [&task("2", "3", ["1", "3"])[..], &[("PMI_RANK", "0"), ("PMI_SIZE", "4")]].concat();
         refused(&both, "SLURM_ARRAY_TASK_ID: '2/3': names another share than PMI_RANK, which says 1/4");
+    }
+
+    /// Ranks of which no variable tells the share would all run all members, or the same share of an array.
+    #[test]
+    fn ranks_that_no_launcher_counts_are_refused() {
+        let srun =
+            [("SLURM_PROCID", "0"), ("SLURM_STEP_NUM_TASKS", "4"), ("SLURM_NTASKS", "4"), ("PMIX_RANK", "0")];
+        let says = "SLURM_STEP_NUM_TASKS: '4': several processes are started";
+        let array = task("2", "3", ["1", "3"]);
+        let within = [&array[..], &srun[..]].concat();
+        for variables in [&srun[..], &srun[..3], &within[..]] {
+            let message = told(variables).unwrap_err();
+            assert!(message.contains(says) && message.contains("--shard K/N"), "{message}");
+        }
+        let message = told(&[("PMIX_RANK", "1")]).unwrap_err();
+        assert!(message.contains("PMIX_RANK: '1': several processes"), "{message}");
+        // one process, as that of a batch script with many processors
+        assert_eq!(told(&[("SLURM_PROCID", "0"), ("SLURM_NTASKS", "4")]), Ok(None));
+        let alone = [("SLURM_PROCID", "0"), ("SLURM_STEP_NUM_TASKS", "1"), ("PMIX_RANK", "0")];
+        assert_eq!(told(&alone), Ok(None));
+        assert_eq!(told(&[&array[..], &alone[..]].concat()), told(&array));
+        // daemons of mpirun are tasks of srun, one on each node
+        let mpi = [("OMPI_COMM_WORLD_RANK", "2"), ("OMPI_COMM_WORLD_SIZE", "8")];
+        assert_eq!(told(&[&mpi[..], &srun[..]].concat()), told(&mpi));
     }
 }

@@ -159,6 +159,25 @@ fn gathering_leaves_no_file_of_other_results_beside_its_own() {
 }
 
 #[test]
+fn ranks_without_a_share_write_nothing() {
+    let scratch = Scratch::new("ensemble-ranks");
+    scratch.file("spec.toml", EXACT);
+    let run = |flags: &[&str]| {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_polhode"));
+        command.env("SLURM_PROCID", "1").env("SLURM_STEP_NUM_TASKS", "2").env("PMIX_RANK", "1");
+        command.args(["ensemble", "spec.toml", "--out", "out"]).args(flags);
+        let done = command.current_dir(&scratch.0).output().unwrap();
+        (done.status.code(), String::from_utf8(done.stderr).unwrap())
+    };
+    let (code, told) = run(&[]);
+    assert!(code == Some(2) && told.contains("several processes are started"), "{code:?} {told}");
+    assert_eq!(scratch.names(), ["spec.toml"]);
+    // as asked for
+    assert_eq!(run(&["--shard", "2/2"]).0, Some(0));
+    assert_eq!(names(&scratch.0.join("out/shards")), ["2-of-2"]);
+}
+
+#[test]
 fn launchers_name_the_shard() {
     let scratch = Scratch::new("ensemble-launchers");
     scratch.file("spec.toml", EXACT);
