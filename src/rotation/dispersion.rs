@@ -62,7 +62,8 @@ impl Dispersion {
             let Vec3([x, y, z]) = (*q * mean.conjugate()).logarithm();
             [x * x, x * y, x * z, y * y, y * z, z * z]
         });
-        let [xx, xy, xz, yy, yz, zz] = moments.map(|sum| sum / count);
+        // the mean is that of the attitudes themselves, and takes one of them; one alone has no spread
+        let [xx, xy, xz, yy, yz, zz] = moments.map(|sum| sum / (count - 1.0).max(1.0));
         let (variances, axes) = eigen([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]);
         let ordered = [2, 1, 0];
         Some(Dispersion {
@@ -104,8 +105,8 @@ impl Dispersion {
         self.quantile(1.0)
     }
 
-    /// Standard deviations about the [axes](Self::axes), rad, descending: square roots of the eigenvalues of the second moments
-    /// of the rotation vectors from the mean. The variances carry the rounding of the largest.
+    /// Standard deviations about the [axes](Self::axes), rad, descending, as of a sample: square roots of the eigenvalues of
+    /// Σ v vᵀ/(n − 1), v the rotation vectors from the mean. The variances carry the rounding of the largest.
     #[must_use]
     pub fn deviations(&self) -> [f64; 3] {
         self.deviations
@@ -165,8 +166,8 @@ mod tests {
         let spread = Dispersion::of(&attitudes).unwrap();
         assert!(rotation_angle(spread.mean(), mean()) < 1e-15);
         for (k, length) in lengths.into_iter().enumerate() {
-            // two of six vectors have this component
-            let expected = length / 3.0_f64.sqrt();
+            // two of six vectors have this component, of which the mean takes one
+            let expected = length * 0.4_f64.sqrt();
             // variances carry the rounding of the largest
             let rounding = f64::EPSILON * (lengths[0] / length) * (lengths[0] / length) + 1e-14;
             let error = (spread.deviations()[k] / expected - 1.0).abs();

@@ -139,7 +139,7 @@ fn summary(reduced: &[Option<Reduced>], shares: &Shares) -> Table {
 }
 
 fn dispersion(reduced: &[Option<Reduced>], shares: &Shares) -> Table {
-    let sigma = "standard deviation of the rotation vectors from the mean about this axis";
+    let sigma = "standard deviation of the rotation vectors from the mean about this axis, by members - 1";
     let axis = "principal direction of the rotation vectors, axes of space";
     let mut columns = vec![Column::new("t", "s", "time")];
     columns.extend(["sigma_1", "sigma_2", "sigma_3"].map(|name| Column::new(name, "rad", sigma)));
