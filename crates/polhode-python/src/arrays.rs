@@ -21,7 +21,7 @@ impl Numbers {
     /// Of a number, an array of any layout, or what `numpy.asarray` makes one of.
     pub(crate) fn of(name: &'static str, value: &Bound<'_, PyAny>) -> PyResult<Self> {
         if value.is_exact_instance_of::<PyFloat>() || value.is_exact_instance_of::<PyInt>() {
-            let number =
+            let number: f64 =
                 value.extract().map_err(|_| refused(format!("{name}: outside the range of a double")))?;
             if value.is_exact_instance_of::<PyInt>() && !value.eq(number)? {
                 return Err(no_double(name, value, number));
@@ -135,11 +135,11 @@ fn as_floats<'py>(name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Bou
 }
 
 /// Refuses an array in which an integer would change as a double, or which holds texts or truth values among objects.
-fn check_exact(
+fn check_exact<'py>(
     name: &'static str,
-    array: &Bound<'_, PyAny>,
+    array: &Bound<'py, PyAny>,
     kind: &str,
-    require: &Bound<'_, PyAny>,
+    require: &Bound<'py, PyAny>,
 ) -> PyResult<()> {
     let is_short = || Ok::<_, PyErr>(array.getattr("dtype")?.getattr("itemsize")?.extract::<usize>()? < 8);
     let unreadable = || refused(format!("{name}: numpy makes no array of numbers of it"));
