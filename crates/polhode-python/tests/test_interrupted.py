@@ -18,7 +18,7 @@ LONG = {
     "advise": "[polhode.advise([1, 2, 3], [.4, 1, -.3], until=1e6, attitude_error=1e-9, exclude=['exact']) for _ in range(1000)]",
     "record": ENDLESS + "polhode.read(name, kind='record')",
     "table": ENDLESS + "polhode.read(name)",
-    "mesh": ENDLESS + "polhode.read(name, kind='mesh', mass=1)",
+    "mesh": ENDLESS.replace("csv", "stl") + "polhode.read(name, mass=1)",
 }
 
 
