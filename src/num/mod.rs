@@ -38,6 +38,7 @@ mod tape;
 pub mod trig;
 
 pub use covariance::{Covariance, DistributionError};
+pub(crate) use dd::DdLanes;
 pub use dd::{Dd, ParseDdError};
 #[cfg(any(test, feature = "random"))]
 pub use distribution::Distribution;

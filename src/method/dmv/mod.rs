@@ -1,5 +1,6 @@
 //! `dmv`: the discrete Moser–Veselov map of any even order: plain steps of a body with slightly other moments and clock.
 
+mod flows;
 mod series;
 
 use std::sync::Arc;
@@ -98,12 +99,13 @@ impl<S: Precise> Method<S> for PreprocessedDmv {
 
     fn maps<F: Field<S>>(&self, rotor: &Rotor, field: &F) -> impl Fn(Dd) -> PreprocessedDmvMap<S> {
         let series = Arc::new(Series::new(rotor, self.order));
+        let coefficients = series.coefficients::<S>();
         move |h| {
             let plain = Dmv.map(h, rotor, field);
             PreprocessedDmvMap {
                 rotor: *rotor,
                 h,
-                rounded: series.rounded(h),
+                rounded: series.rounded(h, &coefficients),
                 series: Arc::clone(&series),
                 plain,
                 modified: plain,

@@ -16,6 +16,9 @@
 //! # Notation
 //! X = h² C and A = h² (H − μC)/ν, with μ and ν the centre and half the width of the range of H/C, so that |A| ≤ X.
 
+use std::sync::Arc;
+
+use super::flows::{Lanes, ratios};
 use crate::body::Rotor;
 use crate::num::{Dd, Real};
 use crate::rotation::Vec3;
@@ -52,7 +55,8 @@ impl Series {
         };
         let degree = (order as usize).div_ceil(2) - 1;
         // momenta of length 1 with a fifth of |m|² along the middle axis and the rest shared between the others
-        let samples: Vec<(Dd, Vec<[Dd; 2]>)> = (0..=degree)
+        let mut momenta = [Lanes::all(Dd::ONE); 3];
+        let nodes: Vec<Dd> = (0..=degree)
             .map(|k| {
                 // Chebyshev points of the share
                 let angle = (2 * k + 1) as f64 / (2 * degree + 2) as f64 * core::f64::consts::PI;
@@ -61,26 +65,30 @@ impl Series {
                 squares[high] = Dd::of(0.8) * share;
                 squares[low] = Dd::of(0.8) - squares[high];
                 let m = Vec3(squares.map(Dd::sqrt));
+                for (lanes, component) in momenta.iter_mut().zip(m.0) {
+                    lanes.set(k, component);
+                }
                 let (x, a) = series.arguments(m, Dd::ONE);
-                (a / x, series.at(m, [low, high], degree))
+                a / x
             })
             .collect();
-        let nodes: Vec<Dd> = samples.iter().map(|sample| sample.0).collect();
+        // odd powers vanish
+        let [r_low, r_high] = ratios(&momenta, &inverse_moments.0, [low, high], 2 * degree);
         series.terms = (1..=degree)
             .map(|n| {
-                let column = |which: usize| {
-                    // divided by X^n with X = C = ½
-                    let scale = Dd::of((1_u64 << n) as f64);
-                    let values: Vec<Dd> = samples.iter().map(|sample| sample.1[n][which] * scale).collect();
-                    if inverse_width == Dd::ZERO {
-                        // A is zero
-                        let mut coefficients = vec![Dd::ZERO; n + 1];
-                        coefficients[0] = values[0];
-                        return coefficients;
-                    }
-                    interpolate(&nodes[..=n], &values[..=n])
+                // divided by X^n with X = C = ½
+                let scale = Dd::of((1_u64 << n) as f64);
+                let value = |k: usize| {
+                    let (r_low, r_high) = (r_low[2 * n].get(k), r_high[2 * n].get(k));
+                    series.solved([r_low, r_high], [low, high]).map(|value| value * scale)
                 };
-                column(0).into_iter().zip(column(1)).map(|(s, d)| [s, d]).collect()
+                if inverse_width == Dd::ZERO {
+                    // A is zero
+                    let mut coefficients = vec![[Dd::ZERO; 2]; n + 1];
+                    coefficients[0] = value(0);
+                    return coefficients;
+                }
+                interpolate(&nodes[..=n], (0..=n).map(value).collect())
             })
             .collect();
         series
@@ -99,68 +107,47 @@ impl Series {
         evaluate(&self.terms, x, a)
     }
 
-    /// The same series in the digits of `S`, for the step `h`.
-    pub(in crate::method) fn rounded<S: Real>(&self, h: Dd) -> RoundedSeries<S> {
+    /// The coefficients in the digits of `S`, which are those of every step.
+    pub(in crate::method) fn coefficients<S: Real>(&self) -> Coefficients<S> {
+        self.terms.iter().map(|row| row.iter().map(|pair| pair.map(S::from_dd)).collect()).collect()
+    }
+
+    /// The same series with `coefficients`, in their digits, for the step `h`.
+    pub(in crate::method) fn rounded<S: Real>(
+        &self,
+        h: Dd,
+        coefficients: &Coefficients<S>,
+    ) -> RoundedSeries<S> {
         let half = h * h * 0.5;
         let to = |v: Dd| S::from_dd(v);
         RoundedSeries {
             half_square: to(half),
             weights: self.inverse_moments.map(|i| to((i - self.centre) * self.inverse_width * half)),
-            terms: self.terms.iter().map(|row| row.iter().map(|pair| pair.map(to)).collect()).collect(),
+            terms: Arc::clone(coefficients),
         }
     }
 
-    /// Coefficients of h^(2n) in s and d at the momentum `m`, n = 0 … degree; of the sphere d = 0.
-    fn at(&self, m: Vec3<Dd>, [low, high]: [usize; 2], degree: usize) -> Vec<[Dd; 2]> {
-        let length = 2 * degree + 2;
-        let mut momentum = [0, 1, 2].map(|k| vec![m[k]]);
-        let mut increment = [vec![Dd::ONE], vec![Dd::ZERO], vec![Dd::ZERO], vec![Dd::ZERO]];
+    /// s and d, or their coefficients of a power of h, by those of r along two axes; of the sphere d = 0.
+    fn solved(&self, [r_low, r_high]: [Dd; 2], [low, high]: [usize; 2]) -> [Dd; 2] {
         let i = self.inverse_moments;
-        for n in 0..length {
-            let over = Dd::ONE / Dd::of((n + 1) as f64);
-            // m_a' = (1/I_c − 1/I_b) m_b m_c
-            let rates =
-                [(1, 2), (2, 0), (0, 1)].map(|(b, c)| (i[c] - i[b]) * product(&momentum[b], &momentum[c], n));
-            // p' = ½ p ∘ (0, ω)
-            let q = |a: usize, k: usize| product(&increment[a], &momentum[k], n) * i[k] * 0.5;
-            let turned = [
-                -(q(1, 0) + q(2, 1) + q(3, 2)),
-                q(0, 0) + q(2, 2) - q(3, 1),
-                q(0, 1) + q(3, 0) - q(1, 2),
-                q(0, 2) + q(1, 1) - q(2, 0),
-            ];
-            for (component, rate) in momentum.iter_mut().zip(rates).chain(increment.iter_mut().zip(turned)) {
-                component.push(rate * over);
-            }
-        }
-        // r = (4 β/h) / σ along the two axes, even in h
-        let ratio = |k: usize| {
-            let beta: Vec<Dd> =
-                (1..=length).map(|n| product(&increment[0], &increment[k + 1], n) * 4.0).collect();
-            let sigma: Vec<Dd> =
-                (0..length).map(|n| if n == 0 { m[k] * 2.0 } else { momentum[k][n] }).collect();
-            quotient(&beta, &sigma)
-        };
-        let (r_low, r_high) = (ratio(low), ratio(high));
         let apart = i[high] - i[low];
-        (0..=degree)
-            .map(|n| {
-                if apart == Dd::ZERO {
-                    return [r_low[2 * n] / i[low], Dd::ZERO];
-                }
-                let s = (r_high[2 * n] - r_low[2 * n]) / apart;
-                [s, r_low[2 * n] - s * i[low]]
-            })
-            .collect()
+        if apart == Dd::ZERO {
+            return [r_low / i[low], Dd::ZERO];
+        }
+        let s = (r_high - r_low) / apart;
+        [s, r_low - s * i[low]]
     }
 }
+
+/// Coefficients of s − 1 and of d by degree, shared by the maps of a body.
+pub(in crate::method) type Coefficients<S> = Arc<[Vec<[S; 2]>]>;
 
 /// A [`Series`] in the digits of `S`, for one step size.
 #[derive(Clone, Debug)]
 pub(in crate::method) struct RoundedSeries<S> {
     half_square: S,
     weights: Vec3<S>,
-    terms: Vec<Vec<[S; 2]>>,
+    terms: Coefficients<S>,
 }
 
 impl<S: Real> RoundedSeries<S> {
@@ -203,37 +190,24 @@ fn evaluate<S: Real>(terms: &[Vec<[S; 2]>], x: S, a: S) -> [S; 2] {
     [S::of(1.0) + sums[0], sums[1]]
 }
 
-/// The term of degree `n` of a product of power series.
-fn product(a: &[Dd], b: &[Dd], n: usize) -> Dd {
-    (0..=n).fold(Dd::ZERO, |sum, k| sum + a[k] * b[n - k])
-}
-
-/// A quotient of power series, as many terms as both have.
-fn quotient(a: &[Dd], b: &[Dd]) -> Vec<Dd> {
-    let mut terms: Vec<Dd> = Vec::with_capacity(a.len());
-    for n in 0..a.len() {
-        let known = (0..n).fold(Dd::ZERO, |sum, k| sum + terms[k] * b[n - k]);
-        terms.push((a[n] - known) / b[0]);
-    }
-    terms
-}
-
-/// Coefficients of the polynomial through the points, lowest first (Newton's divided differences).
-fn interpolate(nodes: &[Dd], values: &[Dd]) -> Vec<Dd> {
+/// Coefficients of the two polynomials through the points, lowest first (Newton's divided differences).
+fn interpolate(nodes: &[Dd], mut differences: Vec<[Dd; 2]>) -> Vec<[Dd; 2]> {
     let n = nodes.len();
-    let mut differences = values.to_vec();
     for width in 1..n {
         for k in (width..n).rev() {
-            differences[k] = (differences[k] - differences[k - 1]) / (nodes[k] - nodes[k - width]);
+            let ([s, d], [s_before, d_before]) = (differences[k], differences[k - 1]);
+            let apart = nodes[k] - nodes[k - width];
+            differences[k] = [(s - s_before) / apart, (d - d_before) / apart];
         }
     }
-    let mut coefficients = vec![Dd::ZERO; n];
+    let mut coefficients = vec![[Dd::ZERO; 2]; n];
     for k in (0..n).rev() {
-        // times (x − node) plus the next difference
-        for j in (1..n).rev() {
-            coefficients[j] = coefficients[j - 1] - nodes[k] * coefficients[j];
+        // times (x − node) plus the next difference; of a degree that is not reached yet all are zero
+        for j in (0..n - k).rev() {
+            let before = if j == 0 { differences[k] } else { coefficients[j - 1] };
+            let [s, d] = coefficients[j];
+            coefficients[j] = [before[0] - nodes[k] * s, before[1] - nodes[k] * d];
         }
-        coefficients[0] = differences[k] - nodes[k] * coefficients[0];
     }
     coefficients
 }

@@ -21,6 +21,8 @@
 
 mod elementary;
 pub(crate) use elementary::INVERSE_FACTORIAL;
+mod lanes;
+pub(crate) use lanes::DdLanes;
 mod scalar;
 mod text;
 
