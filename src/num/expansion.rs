@@ -89,10 +89,9 @@ impl Expansion {
         for k in 0..self.count {
             let (sum, error) = two_sum(carry, self.parts[k]);
             carry = sum;
-            if error != 0.0 {
-                self.parts[kept] = error;
-                kept += 1;
-            }
+            // without a branch, which nothing foretells: the next one takes the place of a zero
+            self.parts[kept] = error;
+            kept += usize::from(error != 0.0);
         }
         self.count = kept;
         if carry == 0.0 {
@@ -130,10 +129,8 @@ impl Expansion {
         let mut kept = 0;
         for k in first..self.count {
             let (sum, error) = quick_two_sum(self.parts[k], carry);
-            if error != 0.0 {
-                self.parts[kept] = error;
-                kept += 1;
-            }
+            self.parts[kept] = error;
+            kept += usize::from(error != 0.0);
             carry = sum;
         }
         self.parts[kept] = carry;
