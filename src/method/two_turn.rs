@@ -112,6 +112,7 @@ impl TwoAxes {
     }
 
     /// The turns of a step of `h`, two flows in turn as `scheme` says, the turn about the outer axis first.
+    #[cold]
     fn turns<S: Precise>(self, rotor: &Rotor, h: Dd, scheme: &Scheme) -> Turns<S> {
         Turns::two(self.0, self.0.map(|k| self.rate(rotor, k) * h), scheme)
     }
@@ -210,14 +211,13 @@ impl<S: Precise> Method<S> for TwoTurn {
     type Map<F: Field<S>> = TwoTurnMap<S>;
 
     fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, _: &F) -> TwoTurnMap<S> {
-        TwoTurnMap::new(self.axes, STRANG, h, rotor)
+        TwoTurnMap::new(self.axes, STRANG, h, rotor, false)
     }
 
     fn free_map<F: Field<S>>(&self, scheme: &Scheme, h: Dd, rotor: &Rotor, _: &F) -> Option<TwoTurnMap<S>> {
         let _ = self.free_cost(scheme)?;
-        let mut map = TwoTurnMap::new(self.axes, *scheme, h, rotor);
-        map.free_to_choose = self.axes.is_none() && *scheme == STRANG;
-        Some(map)
+        let free_to_choose = self.axes.is_none() && *scheme == STRANG;
+        Some(TwoTurnMap::new(self.axes, *scheme, h, rotor, free_to_choose))
     }
 }
 
@@ -230,24 +230,31 @@ pub struct TwoTurnMap<S> {
     /// Whether the axes may be chosen by the orbit when the motion is opened.
     free_to_choose: bool,
     axes: TwoAxes,
-    turns: Turns<S>,
+    /// `None` until it is known whether they are.
+    turns: Option<Turns<S>>,
     ball: Casimir<S>,
     momentum_space: Vec3<Dd>, // when opened
 }
 
 impl<S: Precise> TwoTurnMap<S> {
-    fn new(axes: Option<TwoAxes>, scheme: Scheme, h: Dd, rotor: &Rotor) -> Self {
+    fn new(axes: Option<TwoAxes>, scheme: Scheme, h: Dd, rotor: &Rotor, free_to_choose: bool) -> Self {
         let axes = axes.unwrap_or_else(|| TwoAxes::usual(rotor.moments()));
         TwoTurnMap {
             rotor: *rotor,
             scheme,
             h,
-            free_to_choose: false,
+            free_to_choose,
             axes,
-            turns: axes.turns(rotor, h, &scheme),
+            turns: (!free_to_choose).then(|| axes.turns(rotor, h, &scheme)),
             ball: Casimir::new(S::from_dd(Dd::ONE / rotor.moments::<Dd>()[axes.reference()])),
             momentum_space: Vec3::zero(),
         }
+    }
+
+    #[inline(always)]
+    fn turns(&mut self) -> &mut Turns<S> {
+        let TwoTurnMap { rotor, scheme, h, axes, turns, .. } = self;
+        turns.get_or_insert_with(|| axes.turns(rotor, *h, scheme))
     }
 }
 
@@ -255,41 +262,41 @@ impl<S: Precise> Map<S> for TwoTurnMap<S> {
     #[inline]
     fn apply(&mut self, at: Time, x: &mut Point<S>) {
         self.ball.flow(at, S::from_dd(self.h), x);
-        self.turns.apply(x);
+        self.turns().apply(x);
     }
 
     fn open(&mut self, _: Time, x: &mut Point<S>) {
         if self.free_to_choose {
             let m = x.momentum_body.map(S::to_f64);
             self.axes = TwoAxes::best(m, self.rotor.moments());
-            self.turns = self.axes.turns(&self.rotor, self.h, &self.scheme);
+            self.turns = None;
         }
         self.momentum_space = x.attitude.map(S::to_dd).rotate(x.momentum_body.map(S::to_dd));
-        self.turns.open(x);
+        self.turns().open(x);
     }
 
     #[inline]
     fn advance(&mut self, _: Time, x: &mut Point<S>) {
-        self.turns.advance(x);
+        self.turns().advance(x);
     }
 
     #[inline]
     fn advance_by(&mut self, n: u64, _: &Clock, x: &mut Point<S>) {
-        self.turns.advance_by(n, x);
+        self.turns().advance_by(n, x);
     }
 
     fn side_by_side(&self) -> Option<SideBySide<S>> {
-        self.turns.side_by_side()
+        self.turns.as_ref()?.side_by_side()
     }
 
     fn part_side_by_side(&self) -> Option<SideBySide<S>> {
         let ball = (LaneFlow::Ball, self.ball.quarter_rate(S::from_dd(self.h)));
-        Some(SideBySide::flows([ball].into_iter().chain(self.turns.flows())))
+        Some(SideBySide::flows([ball].into_iter().chain(self.turns.as_ref()?.flows())))
     }
 
     #[inline]
     fn close(&mut self, _: Time, x: &mut Point<S>) {
-        self.turns.close(x);
+        self.turns().close(x);
     }
 
     fn synchronize(&self, elapsed: Dd, x: &mut Point<S>) {

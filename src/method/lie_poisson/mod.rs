@@ -4,6 +4,8 @@ mod axis_order;
 
 pub use axis_order::{AxisOrder, AxisOrderError};
 
+use std::cell::OnceCell;
+
 use super::schemes::{STRANG, Scheme, Stages};
 use super::{Cost, Energy, FreePart, Kicks, Map, Method, SideBySide, Splitting, Symmetric, WheelSplit};
 use crate::body::{Clock, Field, Point, Rotor, Time};
@@ -73,15 +75,23 @@ impl FreePart for AxisSplit {
 impl<S: Precise> Method<S> for AxisSplit {
     type Map<F: Field<S>> = AxisSplitMap<S>;
 
-    fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, _: &F) -> AxisSplitMap<S> {
-        AxisSplitMap::new(self.axes, vec![Dd::ONE], h, rotor)
+    fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, field: &F) -> AxisSplitMap<S> {
+        Method::<S>::maps(self, rotor, field)(h)
+    }
+
+    fn maps<F: Field<S>>(&self, rotor: &Rotor, _: &F) -> impl Fn(Dd) -> AxisSplitMap<S> {
+        let (axes, best) = (self.axes, OnceCell::new());
+        move |h| {
+            let order = axes.unwrap_or_else(|| *best.get_or_init(|| AxisOrder::best(rotor.moments())));
+            AxisSplitMap::new(Some(order), vec![Dd::ONE], h, rotor)
+        }
     }
 
     fn free_map<F: Field<S>>(&self, scheme: &Scheme, h: Dd, rotor: &Rotor, _: &F) -> Option<AxisSplitMap<S>> {
         let _ = self.free_cost(scheme)?;
-        let mut map = AxisSplitMap::new(self.axes, scheme.lengths()?, h, rotor);
-        map.free_to_choose = self.axes.is_none() && *scheme == STRANG;
-        Some(map)
+        let by_orbit = self.axes.is_none() && *scheme == STRANG;
+        let order = (!by_orbit).then(|| self.axes.unwrap_or_else(|| AxisOrder::best(rotor.moments())));
+        Some(AxisSplitMap::new(order, scheme.lengths()?, h, rotor))
     }
 }
 
@@ -94,14 +104,22 @@ pub struct AxisSplitMap<S> {
     h: Dd,
     /// Whether the axes may be chosen by the orbit when the motion is opened.
     free_to_choose: bool,
-    turns: Turns<S>,
+    /// `None` until it is known whether they are.
+    turns: Option<Turns<S>>,
 }
 
 impl<S: Precise> AxisSplitMap<S> {
-    fn new(axes: Option<AxisOrder>, shares: Vec<Dd>, h: Dd, rotor: &Rotor) -> Self {
-        let order = axes.unwrap_or_else(|| AxisOrder::best(rotor.moments()));
-        let turns = turns(order, rotor, h, &shares);
-        AxisSplitMap { rotor: *rotor, shares, h, free_to_choose: false, turns }
+    /// With the axes in the order `order`, or as the orbit says.
+    fn new(order: Option<AxisOrder>, shares: Vec<Dd>, h: Dd, rotor: &Rotor) -> Self {
+        let turns = order.map(|order| turns(order, rotor, h, &shares));
+        AxisSplitMap { rotor: *rotor, shares, h, free_to_choose: order.is_none(), turns }
+    }
+
+    /// The turns; of no orbit in the order that is best for the energy.
+    #[inline(always)]
+    fn turns(&mut self) -> &mut Turns<S> {
+        let AxisSplitMap { rotor, shares, h, turns, .. } = self;
+        turns.get_or_insert_with(|| usual(rotor, *h, shares))
     }
 }
 
@@ -110,41 +128,47 @@ fn turns<S: Precise>(order: AxisOrder, rotor: &Rotor, h: Dd, shares: &[Dd]) -> T
     Turns::three(order.axes(), order.axes().map(|axis| inverse[axis] * h), shares)
 }
 
+#[cold]
+#[inline(never)]
+fn usual<S: Precise>(rotor: &Rotor, h: Dd, shares: &[Dd]) -> Turns<S> {
+    turns(AxisOrder::best(rotor.moments()), rotor, h, shares)
+}
+
 impl<S: Precise> Map<S> for AxisSplitMap<S> {
     #[inline]
     fn apply(&mut self, _: Time, x: &mut Point<S>) {
-        self.turns.apply(x);
+        self.turns().apply(x);
     }
 
     fn open(&mut self, _: Time, x: &mut Point<S>) {
         if self.free_to_choose {
             let m = x.momentum_body.map(S::to_f64);
             let order = AxisOrder::best_for_orbit(m, self.rotor.moments());
-            self.turns = turns(order, &self.rotor, self.h, &self.shares);
+            self.turns = Some(turns(order, &self.rotor, self.h, &self.shares));
         }
-        self.turns.open(x);
+        self.turns().open(x);
     }
 
     #[inline]
     fn advance(&mut self, _: Time, x: &mut Point<S>) {
-        self.turns.advance(x);
+        self.turns().advance(x);
     }
 
     #[inline]
     fn advance_by(&mut self, n: u64, _: &Clock, x: &mut Point<S>) {
-        self.turns.advance_by(n, x);
+        self.turns().advance_by(n, x);
     }
 
     fn side_by_side(&self) -> Option<SideBySide<S>> {
-        self.turns.side_by_side()
+        self.turns.as_ref()?.side_by_side()
     }
 
     fn part_side_by_side(&self) -> Option<SideBySide<S>> {
-        Some(SideBySide::flows(self.turns.flows()))
+        Some(SideBySide::flows(self.turns.as_ref()?.flows()))
     }
 
     #[inline]
     fn close(&mut self, _: Time, x: &mut Point<S>) {
-        self.turns.close(x);
+        self.turns().close(x);
     }
 }

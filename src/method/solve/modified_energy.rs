@@ -193,8 +193,9 @@ impl Orbit {
             let (s, c) = Real::sin_cos(FRAC_PI_2 * (n as f64 + 0.5) / points as f64);
             (squares[n], squares[points - 1 - n]) = (s * s, c * c);
         }
-        let at = |energy| Orbit::of(squares, m, energy, norm, moments);
-        let (below, here, above) = (at(energy - step).here, at(energy), at(energy + step).here);
+        let beside = |energy| Orbit::of::<false>(squares, m, energy, norm, moments).here;
+        let here = Orbit::of::<true>(squares, m, energy, norm, moments);
+        let (below, above) = (beside(energy - step), beside(energy + step));
         let slope = |below: f64, above: f64| (above - below) / (2.0 * step);
         let slope = Means {
             period: slope(below.period, above.period),
@@ -208,8 +209,14 @@ impl Orbit {
     }
 
     /// The means of the orbit with the energy `energy` and |m| = `norm`, not of a pure spin, over points with these squares of sines; the
-    /// slopes are left out.
-    fn of(sines_squared: &[f64], start: Vec3<f64>, energy: f64, norm: f64, moments: Vec3<f64>) -> Orbit {
+    /// slopes are left out, and what has none unless all is asked for.
+    fn of<const ALL: bool>(
+        sines_squared: &[f64],
+        start: Vec3<f64>,
+        energy: f64,
+        norm: f64,
+        moments: Vec3<f64>,
+    ) -> Orbit {
         let Kind { axes: [a, b, c], squares: [a2, b2, c2], parameter } = Kind::of(energy, norm, moments);
         let (ia, ic) = (moments[a], moments[c]);
         let complement = 1.0 - parameter;
@@ -233,6 +240,9 @@ impl Orbit {
             let p = [0, 1, 2].map(|k| s[(k + 1) % 3] * s[(k + 2) % 3]);
             for (product, p) in here.products.iter_mut().zip(p) {
                 *product += p * share;
+            }
+            if !ALL {
+                continue;
             }
             for (square, (j, k)) in squares.iter_mut().zip([(0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1)]) {
                 *square += p[j] * p[k] * share;
