@@ -183,10 +183,10 @@ impl FreePart for TwoTurn {
     }
     fn free_cost(&self, scheme: &Scheme) -> Option<Cost> {
         match scheme.stages {
-            // the last turn of a step and the first of the next are one
-            Stages::Composition(_)
-            | Stages::Alternating { pairs: Pairs::Any | Pairs::NearIntegrable(_), .. } => {
-                Some(Cost::turns(scheme.flows().len() as u32 - 1))
+            // of all flows but one: the last turn of a step and the first of the next are one
+            Stages::Composition(gamma) => Some(Cost::turns(4 * gamma.len() as u32 + 2)),
+            Stages::Alternating { pairs: Pairs::Any | Pairs::NearIntegrable(_), a, b, .. } => {
+                Some(Cost::turns(2 * (a.len() + b.len()) as u32 + 2))
             }
             _ => None,
         }

@@ -128,17 +128,16 @@ impl<A: FreePart> Claimed for Splitting<A, Kicks> {
     }
 
     fn claims(&self, problem: Problem) -> Option<Claims> {
-        let flows = self.scheme.flows();
+        let fewer = self.a.free_cost(&self.scheme).filter(|_| problem == Problem::Free);
+        // which nobody counts where there are fewer
+        let flows = if fewer.is_some() { Vec::new() } else { self.scheme.flows() };
         // in motion under a force the last flow of a step and the first of the next are one
         let at_both_ends =
             |part| [flows.first(), flows.last()].iter().all(|end| end.is_some_and(|f| f.0 == part));
         let exact = |part| part == Part::B || self.a.order().is_none();
         let merged = |part| u32::from(problem != Problem::Free && at_both_ends(part) && exact(part));
         let count = |part| flows.iter().filter(|flow| flow.0 == part).count() as u32 - merged(part);
-        let free = match self.a.free_cost(&self.scheme) {
-            Some(cost) if problem == Problem::Free => cost,
-            _ => self.a.cost() * count(Part::A),
-        };
+        let free = fewer.unwrap_or_else(|| self.a.cost() * count(Part::A));
         let source = if self.scheme == STRANG { self.a.source() } else { self.scheme.source };
         let claims = |order, kept, cost| {
             // of exact flows without kicks nothing is left but the step itself

@@ -80,7 +80,7 @@ impl<S: Precise> Method<S> for AxisSplit {
     }
 
     fn maps<F: Field<S>>(&self, rotor: &Rotor, _: &F) -> impl Fn(Dd) -> AxisSplitMap<S> {
-        let (axes, best) = (self.axes, OnceCell::new());
+        let (axes, best) = (self.axes, OnceCell::<AxisOrder>::new());
         move |h| {
             let order = axes.unwrap_or_else(|| *best.get_or_init(|| AxisOrder::best(rotor.moments())));
             AxisSplitMap::new(Some(order), vec![Dd::ONE], h, rotor)

@@ -249,7 +249,8 @@ impl Scheme {
 /// The whole palindrome of a first half.
 fn closed(half: &[Dd], odd: bool) -> Vec<Dd> {
     let sum = half.iter().fold(Dd::ZERO, |sum, &share| sum + share);
-    let mut all = half.to_vec();
+    let mut all = Vec::with_capacity(2 * half.len() + 2);
+    all.extend(half);
     if odd {
         all.push(Dd::ONE - sum * 2.0);
     } else {
@@ -261,10 +262,15 @@ fn closed(half: &[Dd], odd: bool) -> Vec<Dd> {
 
 /// The flows of Strang's map in steps of these lengths.
 fn flows_of_strang(a: &[Dd]) -> Vec<(Part, Dd)> {
-    let half = |length: Option<&Dd>| length.map(|&length| length * 0.5);
-    let between = a.windows(2).map(|pair| (pair[0] + pair[1]) * 0.5);
-    let b: Vec<Dd> = half(a.first()).into_iter().chain(between).chain(half(a.last())).collect();
-    in_turn(Part::B, &b, a)
+    let mut flows = Vec::with_capacity(2 * a.len() + 1);
+    let mut before: Option<Dd> = None;
+    for &length in a {
+        let both = before.map_or(length, |before| before + length);
+        flows.extend([(Part::B, both * 0.5), (Part::A, length)]);
+        before = Some(length);
+    }
+    flows.extend(before.map(|last| (Part::B, last * 0.5)));
+    flows
 }
 
 /// `outer` and `inner` alternating, from the first of `outer` to its last.
