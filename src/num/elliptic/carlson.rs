@@ -92,7 +92,7 @@ fn zeros<S: Precise>(arguments: [S; 3]) -> usize {
 /// use polhode::num::elliptic::r_f;
 /// assert!((r_f(0.0, 1.0, 1.0) - core::f64::consts::FRAC_PI_2).abs() < 1e-14);
 /// ```
-pub fn r_f<S: Precise>(mut x: S, mut y: S, mut z: S) -> S {
+pub fn r_f<S: Precise>(x: S, y: S, z: S) -> S {
     let diverges = zeros([x, y, z]) > 1;
     if diverges || !ordinary([x, y, z]) {
         if let Some(value) = extreme([x, y, z], diverges) {
@@ -103,28 +103,55 @@ pub fn r_f<S: Precise>(mut x: S, mut y: S, mut z: S) -> S {
             return scaled(r_f(x, y, z), n);
         }
     }
-    while !together((x.to_f64() + y.to_f64() + z.to_f64()) / 3.0, [x, y, z]) {
-        let (a, b, c) = (x.sqrt(), y.sqrt(), z.sqrt());
-        let shift = a * b + b * c + c * a;
-        [x, y, z] = [x, y, z].map(|argument| (argument + shift).times_power_of_two(0.25));
+    let [value] = duplicated([[x, y, z]]);
+    value
+}
+
+/// R_F of each of `arguments`: no step for one of them waits for those for another.
+pub(crate) fn each_r_f<S: Precise, const N: usize>(arguments: [[S; 3]; N]) -> [S; N] {
+    if arguments.iter().all(|&arguments| zeros(arguments) <= 1 && ordinary(arguments)) {
+        duplicated(arguments)
+    } else {
+        arguments.map(|[x, y, z]| r_f(x, y, z))
     }
-    let mean = (x + y + z) / S::of(3.0);
-    let (x, y) = ((mean - x) / mean, (mean - y) / mean);
-    let z = -(x + y);
-    let (e2, e3) = (x * y - z * z, x * y * z);
-    series(
-        240_240.0,
-        [
-            (-24_024.0, e2),
-            (17_160.0, e3),
-            (10_010.0, e2 * e2),
-            (-16_380.0, e2 * e3),
-            (6_930.0, e3 * e3),
-            (-5_775.0, e2 * e2 * e2),
-            (15_015.0, e2 * e2 * e3),
-        ],
-        mean.sqrt(),
-    )
+}
+
+/// R_F of each of the triples.
+#[inline]
+fn duplicated<S: Precise, const N: usize>(mut triples: [[S; 3]; N]) -> [S; N] {
+    let mut apart = true;
+    while apart {
+        apart = false;
+        for triple in &mut triples {
+            let [x, y, z] = *triple;
+            if together((x.to_f64() + y.to_f64() + z.to_f64()) / 3.0, *triple) {
+                continue;
+            }
+            apart = true;
+            let (a, b, c) = (x.sqrt(), y.sqrt(), z.sqrt());
+            let shift = a * b + b * c + c * a;
+            *triple = [x, y, z].map(|argument| (argument + shift).times_power_of_two(0.25));
+        }
+    }
+    triples.map(|[x, y, z]| {
+        let mean = (x + y + z) / S::of(3.0);
+        let (x, y) = ((mean - x) / mean, (mean - y) / mean);
+        let z = -(x + y);
+        let (e2, e3) = (x * y - z * z, x * y * z);
+        series(
+            240_240.0,
+            [
+                (-24_024.0, e2),
+                (17_160.0, e3),
+                (10_010.0, e2 * e2),
+                (-16_380.0, e2 * e3),
+                (6_930.0, e3 * e3),
+                (-5_775.0, e2 * e2 * e2),
+                (15_015.0, e2 * e2 * e3),
+            ],
+            mean.sqrt(),
+        )
+    })
 }
 
 /// R_C(x, y) = R_F(x, y, y) for x ≥ 0 and y > 0; infinite at y = 0.
@@ -270,4 +297,25 @@ fn third_kind<S: Precise>(mean: S, x: S, y: S, z: S) -> S {
         ],
         mean * mean.sqrt(),
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::Real;
+
+    /// Side by side every integral has the bits that it has alone, ordinary or not.
+    #[test]
+    fn each_r_f_has_the_bits_of_one_alone() {
+        let numbers = [0.0, 1e-300, 1e-12, 0.037, 0.3, 1.0, 7.0, 1e200];
+        for (n, &x) in numbers.iter().enumerate() {
+            for (k, &y) in numbers.iter().enumerate() {
+                let other = numbers[(3 * n + 5 * k) % numbers.len()];
+                let triples =
+                    [[x, y, 1.0], [y, other, 0.6]].map(|triple| triple.map(|x| Dd::of(x) / Dd::of(3.0)));
+                let alone = triples.map(|[x, y, z]| r_f(x, y, z));
+                assert_eq!(each_r_f(triples), alone, "{triples:?}");
+            }
+        }
+    }
 }

@@ -18,5 +18,6 @@
 mod carlson;
 mod jacobi;
 
+pub(crate) use carlson::each_r_f;
 pub use carlson::{r_c, r_d, r_f, r_j};
 pub use jacobi::{Modulus, incomplete, jacobi};

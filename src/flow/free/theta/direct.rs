@@ -5,7 +5,7 @@ use super::series::{
 };
 use crate::flow::free::phase::Phase;
 use crate::flow::free::polhode::Polhode;
-use crate::num::elliptic::{Modulus, r_f};
+use crate::num::elliptic::{Modulus, each_r_f};
 use crate::num::{Dd, Precise, Real};
 
 /// Sums in double-double from which the coefficients are made.
@@ -19,15 +19,22 @@ struct Sums {
 pub(super) fn series(polhode: &Polhode<Dd>) -> Series {
     let [amp_a, amp_b, amp_c] = polhode.amplitude;
     let (norm, delta) = (polhode.norm, polhode.delta);
+    // K' − η, finite also for k = 0, and the phase of the start, for which no limit is taken here
+    let (sn, cn) = polhode.start;
+    let of_eta = [amp_c * amp_c / (norm * norm), amp_b * amp_b / (norm * norm), Dd::ONE];
+    let of_phase = [cn * cn, polhode.complement + polhode.parameter * cn * cn, Dd::ONE];
+    let [of_eta, of_phase] = each_r_f([of_eta, of_phase]);
+    let (eta, start) = (amp_a / norm * of_eta, sn * of_phase);
     let quarter = Modulus::new(polhode.complement).quarter_period();
+    let per_phase = Dd::FRAC_PI_2 / quarter; // x/u
+    let x0 = start * per_phase;
     let q = if polhode.parameter == Dd::ZERO {
         Dd::ZERO
     } else {
         (-(Dd::PI * Modulus::new(polhode.parameter).quarter_period() / quarter)).exp()
     };
-    // K' − η, finite also for k = 0
-    let eta = amp_a / norm * r_f(amp_c * amp_c / (norm * norm), amp_b * amp_b / (norm * norm), Dd::ONE);
     let h = (-(Dd::PI * eta / quarter)).exp();
+    let (s2, c2) = (x0 * 2.0).sin_cos();
     let powers = Powers::of(q);
     let g = q / h;
 
@@ -62,10 +69,8 @@ pub(super) fn series(polhode: &Polhode<Dd>) -> Series {
     }
     let z0 = total(&sums.z_even);
     let slope = (1..DD_TERMS).fold(Dd::ZERO, |sum, n| sum + sums.z_odd[n] * (2.0 * n as f64));
-    let per_phase = Dd::FRAC_PI_2 / quarter; // x/u
     let x_rate = polhode.rate * per_phase;
     let twist_rate = rate_at_zero(polhode) * 0.5 + delta * x_rate * slope / z0;
-    let x0 = polhode.phase() * per_phase;
 
     // θ constants of nome q
     let (mut t2, mut t3, mut t4) = (Dd::of(2.0), Dd::ONE, Dd::ONE);
@@ -92,7 +97,6 @@ pub(super) fn series(polhode: &Polhode<Dd>) -> Series {
         polynomial([0, 1, 2, 3, 4].map(|n: u32| powers.power(n * n + n) * scale), V_MINUS)
     };
 
-    let (s2, c2) = (x0 * 2.0).sin_cos();
     let (mut s, mut c) = (Dd::ZERO, Dd::ONE);
     let (mut re, mut im) = (Dd::ZERO, Dd::ZERO);
     for n in 0..DD_TERMS {
