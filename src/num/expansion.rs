@@ -72,7 +72,8 @@ impl Expansion {
 
     /// The value rounded once, with relative error at most 2⁻¹⁰⁵; zero exactly when the value is zero.
     pub fn to_dd(&self) -> Dd {
-        let compressed = self.clone().compressed();
+        let mut compressed = self.clone();
+        compressed.compress();
         let Some((&hi, rest)) = compressed.parts().split_last() else {
             return Dd::ZERO;
         };
@@ -104,11 +105,6 @@ impl Expansion {
             self.parts[kept] = carry;
             self.count += 1;
         }
-    }
-
-    fn compressed(mut self) -> Expansion {
-        self.compress();
-        self
     }
 
     /// Brings the same value into as few components as its bits need.
@@ -166,7 +162,8 @@ impl Add for &Expansion {
         for &part in other.parts() {
             sum.push(part);
         }
-        sum.compressed()
+        sum.compress();
+        sum
     }
 }
 
@@ -180,8 +177,16 @@ impl Sub for &Expansion {
 impl Mul for &Expansion {
     type Output = Expansion;
     fn mul(self, other: &Expansion) -> Expansion {
-        let pairs = self.parts().iter().flat_map(|&a| other.parts().iter().map(move |&b| two_prod(a, b)));
-        Expansion::sum(pairs.flat_map(|(product, error)| [error, product])).compressed()
+        let mut sum = Expansion::default();
+        for &a in self.parts() {
+            for &b in other.parts() {
+                let (product, error) = two_prod(a, b);
+                sum.push(error);
+                sum.push(product);
+            }
+        }
+        sum.compress();
+        sum
     }
 }
 
