@@ -11,8 +11,17 @@ pub(in crate::method) fn lengths<S: Real>(h: Dd, shares: &[Dd]) -> Vec<Dd> {
         let left = but_last.iter().fold(h, |left, &length| left - length);
         return but_last.into_iter().chain([S::rounded(left)]).collect();
     }
-    let outer: Vec<Dd> = shares[..(n - 1) / 2].iter().map(|&share| S::rounded(h * share)).collect();
-    let left = outer.iter().fold(h, |left, &length| left - length * 2.0);
-    let centre = if n % 2 == 1 { vec![S::rounded(left)] } else { vec![S::rounded(left * 0.5); 2] };
-    outer.iter().copied().chain(centre).chain(outer.iter().rev().copied()).collect()
+    let outer = (n - 1) / 2;
+    let mut all = Vec::with_capacity(n);
+    all.extend(shares[..outer].iter().map(|&share| S::rounded(h * share)));
+    let left = all.iter().fold(h, |left, &length| left - length * 2.0);
+    if n % 2 == 1 {
+        all.push(S::rounded(left));
+    } else {
+        all.extend([S::rounded(left * 0.5); 2]);
+    }
+    for k in (0..outer).rev() {
+        all.push(all[k]);
+    }
+    all
 }
