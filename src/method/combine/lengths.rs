@@ -12,7 +12,7 @@ pub(in crate::method) fn lengths<S: Real>(h: Dd, shares: &[Dd]) -> Vec<Dd> {
         return but_last.into_iter().chain([S::rounded(left)]).collect();
     }
     let outer = (n - 1) / 2;
-    let mut all = Vec::with_capacity(n);
+    let mut all: Vec<Dd> = Vec::with_capacity(n);
     all.extend(shares[..outer].iter().map(|&share| S::rounded(h * share)));
     let left = all.iter().fold(h, |left, &length| left - length * 2.0);
     if n % 2 == 1 {

@@ -249,7 +249,7 @@ impl Scheme {
 /// The whole palindrome of a first half.
 fn closed(half: &[Dd], odd: bool) -> Vec<Dd> {
     let sum = half.iter().fold(Dd::ZERO, |sum, &share| sum + share);
-    let mut all = Vec::with_capacity(2 * half.len() + 2);
+    let mut all: Vec<Dd> = Vec::with_capacity(2 * half.len() + 2);
     all.extend(half);
     if odd {
         all.push(Dd::ONE - sum * 2.0);
@@ -262,7 +262,7 @@ fn closed(half: &[Dd], odd: bool) -> Vec<Dd> {
 
 /// The flows of Strang's map in steps of these lengths.
 fn flows_of_strang(a: &[Dd]) -> Vec<(Part, Dd)> {
-    let mut flows = Vec::with_capacity(2 * a.len() + 1);
+    let mut flows: Vec<(Part, Dd)> = Vec::with_capacity(2 * a.len() + 1);
     let mut before: Option<Dd> = None;
     for &length in a {
         let both = before.map_or(length, |before| before + length);
