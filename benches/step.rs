@@ -1,5 +1,5 @@
 //! Time per step of every method, free and under gravity, beside an RK4 written by hand; what counts are the ratios
-//! within one run.
+//! within one run. And the time to prepare a step of the methods of which that takes longest.
 
 #![allow(clippy::expect_used)]
 
@@ -94,5 +94,21 @@ fn of_method(group: &mut BenchmarkGroup<WallTime>, body: &Body, start: &State, m
     group.bench_function(method.name(), |b| b.iter(|| step.steps(black_box(&mut x), STEPS)));
 }
 
-criterion_group!(benches, step);
+/// What is worked out before the first step.
+fn set_up(criterion: &mut Criterion) {
+    let textbook = catalogue::body("textbook").expect("in the catalogue");
+    let heavy = Body::heavy(textbook.inertia, [0.1, -0.2, 0.4].into()).expect("a valid weight");
+    let mut group = criterion.benchmark_group("set-up");
+    for name in
+        ["rattle", "lie-poisson@suzuki-4", "dmv:10", "dmv:10@suzuki-4", "dmv:12", "dmv:12@srkn-11b", "dmv:20"]
+    {
+        let method = method(name).expect("a method");
+        group.bench_function(name, |b| {
+            b.iter(|| method.prepare_f64(Clock::new(black_box(0.01)), &heavy).is_ok());
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, step, set_up);
 criterion_main!(benches);
