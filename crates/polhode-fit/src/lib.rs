@@ -96,7 +96,7 @@ pub use report::motion::FittedMotion;
 pub use report::next_step::{Contradiction, NextStep, Origin};
 pub use report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, Systematic, WithoutSegment};
 pub use report::parts::{Halves, Scatter};
-pub use report::torque_free::{InvariantTrend, Memory, Whiteness};
+pub use report::torque_free::{Blow, InvariantTrend, Memory, Whiteness};
 pub use report::warning::Warning;
 pub use settings::Settings;
 pub use settings::known::Known;

@@ -11,7 +11,7 @@ use crate::report::identifiability::{Identifiability, PrincipalAxis};
 use crate::report::next_step::{Contradiction, NextStep, Origin};
 use crate::report::nuisance::{FittedTorque, Nuisance};
 use crate::report::parts::{Halves, Scatter};
-use crate::report::torque_free::{InvariantTrend, Memory};
+use crate::report::torque_free::{Blow, InvariantTrend, Memory};
 use crate::report::warning::Warning;
 use crate::settings::torque::TorqueModel;
 use crate::units::product::UnitProduct;
@@ -135,6 +135,10 @@ fn warnings_say_their_numbers() {
     says(
         Warning::NoisySegment { segment: 2, start: 7.5, times: 3.0 },
         &["segment 3 (from 7.5 s)", "3.0 times"],
+    );
+    says(
+        Warning::Blow(Blow { segment: 1, time: 19.75, deviations: 7.8 }),
+        &["at 19.750 s of segment 2", "leave 7.8 standard deviations"],
     );
     says(Warning::Memory(Memory { chi2: 99.0, dof: 27 }), &["99 of 27"]);
     says(Warning::MomentumTrend(InvariantTrend { rate: -0.01, sigma: 0.001 }), &["-1.00 +- 0.10 per cent"]);

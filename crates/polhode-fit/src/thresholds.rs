@@ -236,6 +236,8 @@ thresholds! {
             "standard deviations of a trend or a correlation that count", "torque_is_seen_in_the_drifts";
         MEMORY: f64 = 4.753_424_308_822_899,
             "standard normal deviate with a chance of 1e-6: residuals within one turn are correlated", DERIVED;
+        BLOW: f64 = 1e-6,
+            "chance with which noise makes the largest residual of a record: one that it makes as rarely is a blow", DERIVED;
     }
     identifiability: "what a record determines" {
         VAGUE: f64 = 0.1,

@@ -195,6 +195,7 @@ impl Estimate {
             | Warning::RateScale { is_fitted: false, .. }
             | Warning::RateResiduals { .. }
             | Warning::Memory(_)
+            | Warning::Blow(_)
             | Warning::Vibration { .. } => Some(Contradiction::Residuals),
             _ => None,
         };

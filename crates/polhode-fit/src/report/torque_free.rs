@@ -2,7 +2,7 @@
 
 use crate::report::estimate::Residuals;
 use crate::report::parts::quantile;
-use crate::thresholds::trend::{MEMORY, SIGNIFICANT};
+use crate::thresholds::trend::{BLOW, MEMORY, SIGNIFICANT};
 use nalgebra::{Matrix3, Vector3};
 
 use crate::signal::stretch::Stretch;
@@ -83,6 +83,39 @@ pub(crate) fn memory(residuals: &[Residuals], lags: usize) -> Option<Memory> {
     }
     let found = Memory { chi2, dof: 9 * lags };
     (lags > 0 && chi2 > quantile(found.dof as f64, MEMORY)).then_some(found)
+}
+
+/// The place whose residual stands farthest out of the noise.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blow {
+    /// Index of the segment in the record.
+    pub segment: usize,
+    /// When it was, s.
+    pub time: f64,
+    /// The length of the residual, in standard deviations of a component.
+    pub deviations: f64,
+}
+
+/// The largest residual, where noise makes one as large in less than one record of a million; `misfit` is the mean square of all.
+///
+/// The square of the length of three normal numbers exceeds s with a chance of erfc √(s/2) + √(2 s/π) exp(−s/2).
+pub(crate) fn blow(residuals: &[Residuals], misfit: f64) -> Option<Blow> {
+    let noise = misfit.max(1.0).sqrt();
+    let of = |r: &Residuals| {
+        let each = r.times.iter().zip(&r.values);
+        let blow = |(time, value): (&f64, &[f64; 3])| Blow {
+            segment: r.segment,
+            time: *time,
+            deviations: Vector3::from(*value).norm() / noise,
+        };
+        each.map(blow).collect::<Vec<_>>()
+    };
+    let all: Vec<Blow> = residuals.iter().flat_map(of).collect();
+    let largest = all.iter().max_by(|a, b| a.deviations.total_cmp(&b.deviations))?;
+    let half = 0.5 * largest.deviations * largest.deviations;
+    let chance = libm::erfc(half.sqrt()) + core::f64::consts::FRAC_2_SQRT_PI * half.sqrt() * libm::exp(-half);
+    (all.len() as f64 * chance < BLOW).then_some(*largest)
 }
 
 /// Trends of |J ω| and of ω·J ω: slopes of their squares against time about each stretch's own mean, ω being the `rate` of a reading. `torque` is the
@@ -172,6 +205,29 @@ mod tests {
         let significant = |rate| InvariantTrend { rate, sigma: 0.1 }.significant();
         assert!([0.51, -0.51].into_iter().all(significant));
         assert!(![0.49, -0.49, 0.0].into_iter().any(significant));
+    }
+
+    /// The largest residual is a blow beyond the square that chi squared of three degrees of freedom exceeds once in a million times, over the
+    /// number of places: 30.665 of one place, 40.130 of a hundred; times the misfit where that exceeds 1.
+    #[test]
+    fn a_blow_is_what_noise_brings_in_no_record() {
+        let of = |count: usize, square: f64, misfit: f64| {
+            let size = (square / 3.0).sqrt();
+            let mut values = vec![[1.0, -1.0, 0.5]; count];
+            values[count / 2] = [size, -size, size];
+            let times = (0..count).map(|k| 0.5 * k as f64).collect();
+            blow(&[Residuals { segment: 4, times, values, mean_square: 1.0 }], misfit)
+        };
+        for (count, square) in [(1, 30.664_85), (100, 40.13)] {
+            for misfit in [0.5, 1.0, 4.0] {
+                let most = square * f64::max(misfit, 1.0);
+                assert_eq!(of(count, 0.999 * most, misfit), None);
+                let found = of(count, 1.001 * most, misfit).unwrap();
+                assert!((found.deviations / (1.001 * square).sqrt() - 1.0).abs() < 1e-12, "{found:?}");
+                assert_eq!((found.segment, found.time), (4, 0.5 * (count / 2) as f64));
+            }
+        }
+        assert_eq!(blow(&[], 1.0), None);
     }
 
     /// Where |ω|² is a straight line in time, energy changes by its slope and momentum by half of that, with the deviations that the noise

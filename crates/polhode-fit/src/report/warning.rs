@@ -8,7 +8,7 @@ use crate::physical::constraint::ActiveConstraint;
 use crate::report::next_step::Origin;
 use crate::report::nuisance::FittedTorque;
 use crate::report::parts::{Halves, Scatter};
-use crate::report::torque_free::{InvariantTrend, Memory, Whiteness};
+use crate::report::torque_free::{Blow, InvariantTrend, Memory, Whiteness};
 use crate::thresholds::likelihood::LINEAR;
 use crate::thresholds::warnings::NEGATIVE;
 use crate::units::product::{UnitProduct, alternatives};
@@ -109,6 +109,8 @@ pub enum Warning {
     Correlated(Whiteness),
     /// The residuals within one turn of the body are correlated.
     Memory(Memory),
+    /// One residual stands out of all others, and of the torque noise: something happened there.
+    Blow(Blow),
     /// The free motion of the tensor leaves more of the samples than their noise, and the equations do not see it.
     Vibration {
         /// Root mean square of what it leaves over the noise.
@@ -363,6 +365,13 @@ impl fmt::Display for Warning {
                 f,
                 "residuals within one turn of the body are correlated (chi squared {chi2:.0} of {dof}): what acts is no white noise, as of a \
                  magnet, a fluid or a part that moves, or the sensor has errors; the deviations leave that out"
+            ),
+            Self::Blow(Blow { segment, time, deviations }) => write!(
+                f,
+                "at {time:.3} s of segment {} the equations leave {deviations:.1} standard deviations, which noise does not bring: a blow, or a \
+                 body or a sensor that changes there; the tensor may be off by more than its deviations: fit what is before and what is after, \
+                 each by itself",
+                segment + 1
             ),
             Self::Vibration { times, noise } => write!(
                 f,

@@ -15,7 +15,7 @@ use crate::report::differing::Differing;
 use crate::report::estimate::Estimate;
 use crate::report::parts::{Halves, Scatter, halves};
 use crate::report::sensor::{Refuted, Suspect};
-use crate::report::torque_free::{InvariantTrend, memory};
+use crate::report::torque_free::{InvariantTrend, blow, memory};
 use crate::report::warning::Warning;
 use crate::settings::torque::TorqueModel;
 use crate::signal::filtered::Filtered;
@@ -143,6 +143,7 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
         list.push(Warning::Correlated(e.whiteness));
     }
     list.extend(memory(&e.residuals, grounds.lags(e)).map(Warning::Memory));
+    list.extend(blow(&e.residuals, misfit).map(Warning::Blow));
     // the noise itself is known from as many samples, less well
     let surely = |components: f64| 1.0 + 2.0 * DEVIATIONS * (2.0 / components).sqrt();
     let left = grounds.left.filter(|(left, components)| *left > surely(*components));

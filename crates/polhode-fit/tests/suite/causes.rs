@@ -45,6 +45,30 @@ fn a_tensor_that_changes_is_named_with_both() {
     }
 }
 
+/// A moment that grows at once, while the body spins about its axis, is a blow, which torque noise would hide: it is told with its time.
+#[test]
+fn a_blow_is_named_with_its_time() {
+    let mut random = Random::new(647);
+    for (first, second) in [(20, 40), (45, 15)] {
+        let before = Matrix3::from_diagonal(&Vector3::from(SHAPE));
+        let mut after = before;
+        after[(0, 0)] *= 1.03;
+        let none = |_: f64, _: &Vector3<f64>| Vector3::zeros();
+        let mut rates = motion(&before, Vector3::new(0.93, 0.3, 0.2), &sampled(50, first), &none);
+        let last = rates.pop().unwrap();
+        let next = after.try_inverse().unwrap() * (before * last);
+        rates.extend(motion(&after, next, &sampled(50, second), &none));
+        let times: Vec<f64> = (0..rates.len()).map(|k| k as f64 / 50.0).collect();
+        let record = Record::from_samples(&times, &noisy(&rates, 2e-3, &mut random)).unwrap();
+        let e = fit(&record, &Settings::default()).unwrap();
+        let blow =
+            e.warnings.iter().find_map(|w| if let Warning::Blow(blow) = w { Some(blow) } else { None });
+        let blow = blow.unwrap_or_else(|| panic!("{:?}", e.warnings));
+        // to the width of a test function
+        assert!((blow.time - first as f64).abs() < 2.0, "{blow:?}");
+    }
+}
+
 /// A moment that grows near the end makes the parts of a record scatter, and the deviations as much larger; those of an ideal record do not.
 #[test]
 fn parts_that_scatter_are_named_and_enlarge_the_deviations() {
