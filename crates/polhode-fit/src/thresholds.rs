@@ -121,6 +121,8 @@ thresholds! {
             "gain of log-likelihood of a first coefficient; noise brings it once in 600 records", UNMEASURED;
         FURTHER: f64 = 1.5, "the same of each further coefficient, beyond that", UNMEASURED;
         HOPE: f64 = 0.5, "share of it that the equations without a torque must promise before it is fitted", UNMEASURED;
+        ALIKE: f64 = 30.0,
+            "gain of log-likelihood up to which a torque of an impossible body gives way to one of a possible body; a driven body has no such torque", "a_body_that_gains_half_of_its_momentum_gets_no_tensor";
     }
     choice: "what the choice of a torque adds to the deviations" {
         RARE: f64 = 1e-3, "share of answers that the ellipsoid of 99.9 % leaves out", DERIVED;

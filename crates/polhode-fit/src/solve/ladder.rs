@@ -17,7 +17,7 @@ use crate::solve::levels::{Choice, likeliest};
 use crate::solve::radius::{Ends, Failure, descended, estimate, is_long};
 use crate::solve::rounds::{Noise, Reached};
 use crate::solve::weak_estimate::{Convergence, WeakEstimate};
-use crate::thresholds::ladder::{FIRST, FURTHER, HOPE};
+use crate::thresholds::ladder::{ALIKE, FIRST, FURTHER, HOPE};
 
 /// A weak estimate with the torque it was made with.
 pub(crate) struct Chosen {
@@ -75,6 +75,8 @@ struct Rung {
     weak: WeakEstimate,
     /// Its log-likelihood.
     likelihood: f64,
+    /// What the physical law takes of it.
+    loss: f64,
     /// Its equations with every torque, where they were asked for.
     equations: Option<Equations>,
 }
@@ -215,7 +217,10 @@ impl Ladder<'_> {
             fitted.push(next.fitted(floor, variance));
             // as many coefficients of another torque fit noise as well: one that was chosen gives way to what surely explains more
             let asked = threshold(next.coefficients().saturating_sub(best.coefficients()));
-            let surpasses = !best.weak.has_settled() || next.likelihood - best.likelihood > asked;
+            let gain = next.likelihood - best.likelihood;
+            // what only an impossible body would show gives way to what explains about as much of a possible one
+            let by_law = if gain.abs() < ALIKE { best.loss - next.loss } else { 0.0 };
+            let surpasses = !best.weak.has_settled() || gain + by_law > asked;
             if next.weak.has_settled() && surpasses { next } else { best }
         };
         let mut best = climb(none, drag);
@@ -256,8 +261,9 @@ impl Ladder<'_> {
     }
 
     fn rung(&self, model: TorqueModel, weak: WeakEstimate) -> Rung {
-        let likelihood = likelihood(&weak, self.variance) - loss_by_law(&weak, self.variance);
-        Rung { model, weak, likelihood, equations: None }
+        let likelihood = likelihood(&weak, self.variance);
+        let loss = loss_by_law(&weak, self.variance);
+        Rung { model, weak, likelihood, loss, equations: None }
     }
 
     /// What every model makes of the record, and every error of it in the place of a torque. Of one that was not fitted by itself the
@@ -317,7 +323,7 @@ pub(crate) fn likelihood(weak: &WeakEstimate, variance: f64) -> f64 {
 }
 
 /// Loss of log-likelihood by that the tensor is one of a body and that drag takes energy: half the square of the distance to the nearest
-/// such unknowns. A torque that explains the record as none of a body would explains nothing.
+/// such unknowns.
 fn loss_by_law(weak: &WeakEstimate, variance: f64) -> f64 {
     let kept = |column: &Column| matches!(column.class(), Class::Drag | Class::Input);
     let nearest = |joint: Joint| nearest(&joint.told, &[], &dissipation(&weak.columns, &joint.kept)).ok();
