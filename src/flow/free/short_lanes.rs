@@ -25,7 +25,7 @@ impl<const K: usize> Rows<K> {
     fn of(lanes: &[Lane; K], part: usize) -> Self {
         let mut rows = Self::ZERO;
         for (row, lane) in rows.0.iter_mut().zip(lanes) {
-            *row = *lane.as_chunks().0.get(part).unwrap_or(&ZERO);
+            *row = *self::row(lane, part);
         }
         rows
     }
@@ -107,55 +107,64 @@ impl FreeLanes {
     pub(crate) fn sum(&mut self, t: &Lane, attitude: &[Lane; 4], momentum: &[Lane; 3]) -> usize {
         let mut settled = 0;
         for part in 0..LANES / WIDTH {
-            let t = Rows::of(&[*t], part);
-            let (attitude, momentum) = (Rows::of(attitude, part), Rows::of(momentum, part));
-            let mut last = Rows::ZERO;
-            let top = self.expand(part, &t.0[0], &attitude, &momentum, &mut last.0[0]);
-            settled += self.add(part, top, &momentum, &mut last.0[0]);
-            last.write_to(&mut self.last, part);
+            self.terms.momentum[0] = Rows::of(momentum, part);
+            self.terms.attitude[0] = Rows::of(attitude, part);
+            let mut last = Rows::<1>::ZERO;
+            let ends = self.expand(part, row(t, part), &mut last.0[0]);
+            settled += self.add(part, ends, &last.0[0]);
         }
         settled
     }
 
-    /// The terms of the bodies of `part`, until all series are long enough; the number of the last.
+    /// The terms of the bodies of `part`, until all series are long enough; the numbers with which the first of them ends, and the last.
     #[inline(always)]
-    fn expand(
-        &mut self,
-        part: usize,
-        t: &[f64; WIDTH],
-        Rows(attitude): &Rows<4>,
-        Rows(momentum): &Rows<3>,
-        last: &mut [f64; WIDTH],
-    ) -> usize {
-        let Rows([a, b, c]) = Rows::of(&self.inverse_moments, part);
-        let Rows([d, e, f]) = Rows::of(&self.gyroscopic, part);
+    fn expand(&mut self, part: usize, t: &[f64; WIDTH], last: &mut [f64; WIDTH]) -> (usize, usize) {
+        let ([a, b, c], [d, e, f]) = (&self.inverse_moments, &self.gyroscopic);
+        let (a, b, c) = (row(a, part), row(b, part), row(c, part));
+        let (d, e, f) = (row(d, part), row(e, part), row(f, part));
         let Terms { momentum: m, turn, attitude: q } = &mut self.terms;
-        let Rows(mut least) = Rows::<2>::ZERO;
-        m[0] = Rows(*momentum);
-        q[0] = Rows(*attitude);
-        let Rows(spin) = &mut turn[0];
+        let (Rows(mut least), mut sums) = (Rows::<2>::ZERO, Rows::<7>::ZERO);
+        let (Rows(momentum), Rows(spin)) = (&m[0], &mut turn[0]);
         for l in 0..WIDTH {
             let omega = [momentum[0][l] * a[l], momentum[1][l] * b[l], momentum[2][l] * c[l]];
             (spin[0][l], spin[1][l], spin[2][l]) = (omega[0] * 0.5, omega[1] * 0.5, omega[2] * 0.5);
             last[l] = if largest(omega) * t[l].abs() < SHORT { 0.0 } else { OTHERWISE };
         }
-        let mut top = 0;
-        while top < TERMS - 2 && zeros(last) > 0 {
-            let mut sums = Rows::<7>::ZERO;
+        let mut going = 0;
+        for last in &*last {
+            going += usize::from(*last == 0.0);
+        }
+        let (mut first, mut top) = (TERMS, 0);
+        while top < TERMS - 2 && going > 0 {
             let terms = (&m[..=top], &q[..=top], &turn[..=top]);
-            let mut k = 0;
-            while k + 4 <= top + 1 {
-                products::<4>(&mut sums, terms, k);
-                k += 4;
+            // of more, some registers would be put away
+            let mut k = top % 3 + 1;
+            match k {
+                1 => products::<1, true>(&mut sums, terms, 0),
+                2 => products::<2, true>(&mut sums, terms, 0),
+                _ => products::<3, true>(&mut sums, terms, 0),
             }
-            while k < top + 1 {
-                products::<1>(&mut sums, terms, k);
-                k += 1;
+            while k <= top {
+                products::<3, false>(&mut sums, terms, k);
+                k += 3;
             }
             let reciprocal = self.reciprocals[top + 1];
             top += 1;
             let (Rows(m), Rows(spin), Rows(q), Rows(sums)) =
                 (&mut m[top], &mut turn[top], &mut q[top], &sums);
+            if top == 1 {
+                for l in 0..WIDTH {
+                    let factor = t[l] * reciprocal;
+                    let momentum =
+                        [d[l] * sums[0][l] * factor, e[l] * sums[1][l] * factor, f[l] * sums[2][l] * factor];
+                    let attitude = [sums[3][l] * factor, sums[4][l] * factor, sums[5][l] * factor];
+                    let attitude = larger(largest(attitude), (sums[6][l] * factor).abs());
+                    least[0][l] = 0.25 * f64::ROUNDOFF * largest(momentum);
+                    least[1][l] = 0.25 * f64::ROUNDOFF * attitude;
+                }
+            }
+            let (number, before) = (top as f64, going);
+            going = 0;
             for l in 0..WIDTH {
                 let factor = t[l] * reciprocal;
                 let x = d[l] * sums[0][l] * factor;
@@ -163,39 +172,37 @@ impl FreeLanes {
                 let z = f[l] * sums[2][l] * factor;
                 (m[0][l], m[1][l], m[2][l]) = (x, y, z);
                 (spin[0][l], spin[1][l], spin[2][l]) = (x * a[l] * 0.5, y * b[l] * 0.5, z * c[l] * 0.5);
-                (q[0][l], q[1][l]) = (sums[3][l] * factor, sums[4][l] * factor);
-                (q[2][l], q[3][l]) = (sums[5][l] * factor, sums[6][l] * factor);
-            }
-            if top == 1 {
-                for l in 0..WIDTH {
-                    let attitude = larger(largest([q[0][l], q[1][l], q[2][l]]), q[3][l].abs());
-                    least[0][l] = 0.25 * f64::ROUNDOFF * largest([m[0][l], m[1][l], m[2][l]]);
-                    least[1][l] = 0.25 * f64::ROUNDOFF * attitude;
-                }
-            }
-            let number = top as f64;
-            for l in 0..WIDTH {
+                let (p, u) = (sums[3][l] * factor, sums[4][l] * factor);
+                let (v, w) = (sums[5][l] * factor, sums[6][l] * factor);
+                (q[0][l], q[1][l], q[2][l], q[3][l]) = (p, u, v, w);
                 let (momentum, attitude) = (least[0][l], least[1][l]);
-                let small = (m[0][l].abs() <= momentum)
-                    & (m[1][l].abs() <= momentum)
-                    & (m[2][l].abs() <= momentum)
-                    & (q[0][l].abs() <= attitude)
-                    & (q[1][l].abs() <= attitude)
-                    & (q[2][l].abs() <= attitude)
-                    & (q[3][l].abs() <= attitude);
-                last[l] = if (last[l] == 0.0) & small { number } else { last[l] };
+                let small = (x.abs() <= momentum)
+                    & (y.abs() <= momentum)
+                    & (z.abs() <= momentum)
+                    & (p.abs() <= attitude)
+                    & (u.abs() <= attitude)
+                    & (v.abs() <= attitude)
+                    & (w.abs() <= attitude);
+                // a sum: what is written to some lanes only takes ten times as long on many processors
+                last[l] += if (last[l] == 0.0) & small { number } else { 0.0 };
+                going += usize::from(last[l] == 0.0);
+            }
+            if going < before {
+                first = first.min(top);
             }
         }
-        top
+        (first, top)
     }
 
-    /// Adds up the terms to the number `top`, of each body to its last, and counts the bodies whose sums are good.
+    /// Adds up the terms to the number `top`, of each body to its last, which is none before `first`, and counts the bodies whose sums
+    /// are good.
     #[inline(always)]
-    fn add(&mut self, part: usize, top: usize, Rows(momentum): &Rows<3>, last: &mut [f64; WIDTH]) -> usize {
+    fn add(&mut self, part: usize, (first, top): (usize, usize), last: &[f64; WIDTH]) -> usize {
         // what leaves the last term as it is, also a zero
         let nothing = [-0.0; WIDTH];
         let (mut m, mut q) = (Rows([nothing; 3]), Rows([nothing; 4]));
-        for k in (1..=top).rev() {
+        let mut k = top;
+        while k > first {
             let (Rows(x), Rows(p), number) = (&self.terms.momentum[k], &self.terms.attitude[k], k as f64);
             for l in 0..WIDTH {
                 let counts = number <= last[l];
@@ -207,26 +214,44 @@ impl FreeLanes {
                 q.0[2][l] += if counts { p[2][l] } else { -0.0 };
                 q.0[3][l] += if counts { p[3][l] } else { -0.0 };
             }
+            k -= 1;
         }
-        let Rows([x, y, z]) = &m;
+        while k > 0 {
+            let terms = (&self.terms.momentum[..=k], &self.terms.attitude[..=k]);
+            match k {
+                1 => add_terms::<1>(&mut m, &mut q, terms),
+                2 => add_terms::<2>(&mut m, &mut q, terms),
+                3 => add_terms::<3>(&mut m, &mut q, terms),
+                _ => add_terms::<4>(&mut m, &mut q, terms),
+            }
+            k = k.saturating_sub(4);
+        }
+        let (Rows(momentum), Rows([x, y, z])) = (&self.terms.momentum[0], &m);
+        let (mut ends, mut settled) = (Rows::<1>::ZERO, 0);
         for l in 0..WIDTH {
             let size = largest([momentum[0][l], momentum[1][l], momentum[2][l]]);
             let steady = largest([x[l], y[l], z[l]]) <= STEADY * f64::ROUNDOFF * size;
-            last[l] = if steady { OTHERWISE } else { last[l] };
+            let end = if steady { OTHERWISE } else { last[l] };
+            ends.0[0][l] = end;
+            settled += usize::from(end > 0.0);
         }
+        ends.write_to(&mut self.last, part);
         m.write_to(&mut self.momentum, part);
         q.write_to(&mut self.attitude, part);
-        let mut settled = 0;
-        for last in &*last {
-            settled += usize::from(*last > 0.0);
-        }
         settled
     }
 }
 
-/// Adds to `sums` the products of the terms `k` and the next ones, `N` in all, with those from the other end.
+/// The numbers of the bodies of `part`.
 #[inline(always)]
-fn products<const N: usize>(
+fn row(lane: &Lane, part: usize) -> &[f64; WIDTH] {
+    lane.as_chunks().0.get(part).unwrap_or(&ZERO)
+}
+
+/// Adds to `sums`, or where they are the `FIRST` to zero, the products of the terms `k` and the next ones, `N` in all, with those from the
+/// other end.
+#[inline(always)]
+fn products<const N: usize, const FIRST: bool>(
     Rows(sums): &mut Rows<7>,
     (m, q, turn): (&[Rows<3>], &[Rows<4>], &[Rows<3>]),
     k: usize,
@@ -237,8 +262,11 @@ fn products<const N: usize>(
     let Some(m_r) = m[..=top - k].last_chunk::<N>() else { return };
     let Some(turn_r) = turn[..=top - k].last_chunk::<N>() else { return };
     for l in 0..WIDTH {
-        let mut x = [sums[0][l], sums[1][l], sums[2][l]];
-        let mut p = [sums[3][l], sums[4][l], sums[5][l], sums[6][l]];
+        let (mut x, mut p) = ([0.0; 3], [0.0; 4]);
+        if !FIRST {
+            x = [sums[0][l], sums[1][l], sums[2][l]];
+            p = [sums[3][l], sums[4][l], sums[5][l], sums[6][l]];
+        }
         for n in 0..N {
             let (Rows(u), Rows(v), Rows(q), Rows(w)) =
                 (&m_k[n], &m_r[N - 1 - n], &q_k[n], &turn_r[N - 1 - n]);
@@ -256,14 +284,23 @@ fn products<const N: usize>(
     }
 }
 
-/// How many series go on.
+/// Adds the last `N` of the terms, from the last on.
 #[inline(always)]
-fn zeros(last: &[f64; WIDTH]) -> usize {
-    let mut zeros = 0;
-    for last in last {
-        zeros += usize::from(*last == 0.0);
+fn add_terms<const N: usize>(Rows(m): &mut Rows<3>, Rows(q): &mut Rows<4>, terms: (&[Rows<3>], &[Rows<4>])) {
+    let (Some(momenta), Some(attitudes)) = (terms.0.last_chunk::<N>(), terms.1.last_chunk::<N>()) else {
+        return;
+    };
+    for l in 0..WIDTH {
+        let (mut x, mut y, mut z) = (m[0][l], m[1][l], m[2][l]);
+        let (mut p, mut u, mut v, mut w) = (q[0][l], q[1][l], q[2][l], q[3][l]);
+        for n in (0..N).rev() {
+            let (Rows(m), Rows(q)) = (&momenta[n], &attitudes[n]);
+            (x, y, z) = (x + m[0][l], y + m[1][l], z + m[2][l]);
+            (p, u, v, w) = (p + q[0][l], u + q[1][l], v + q[2][l], w + q[3][l]);
+        }
+        (m[0][l], m[1][l], m[2][l]) = (x, y, z);
+        (q[0][l], q[1][l], q[2][l], q[3][l]) = (p, u, v, w);
     }
-    zeros
 }
 
 #[inline(always)]
