@@ -227,6 +227,28 @@ fn a_member_under_forces_has_the_bits_of_its_own_run() {
     }
 }
 
+/// Bodies of all blocks, more of them than go side by side, are at one place of their orbit at a time, over more steps than places are held for.
+#[test]
+fn blocks_on_one_orbit_have_the_bits_of_each_member_alone() {
+    let (clock, steps) = (Clock { start: 5.0, step: 0.001 }, [1, 258, 600]);
+    let forces = [Force::gravity_gradient(0.8, 0.3).unwrap()];
+    let (ensemble, inertias) = acted_on(&forces, 600, false);
+    for name in ["rk4", "two-turn", "lie-poisson@suzuki-4"] {
+        let found = advanced(&ensemble, name, clock, &steps);
+        for k in [0, 64, 200, 511, 512, 599] {
+            let body = forces.iter().cloned().fold(Body::free(inertias[k].clone()), Body::with);
+            let start = body.enter_omega(attitude(k).into(), omega(k).into()).unwrap();
+            let run = Run::from_point(&method(name).unwrap(), &body, start.to_f64(), clock).unwrap();
+            let mut run = run.watching(Watch::Never);
+            for (time, &steps) in steps.iter().enumerate() {
+                let alone = run.advance_to(steps).unwrap().state;
+                let (alone, together) = (vec![vec![alone]], vec![vec![found[time][k]]]);
+                assert_eq!(bits(&alone), bits(&together), "{name}, member {k}, {steps} steps");
+            }
+        }
+    }
+}
+
 /// Of steps of up to seven radians some have no solution.
 #[test]
 fn a_member_whose_step_has_no_solution_fails_as_alone() {

@@ -12,6 +12,9 @@ use crate::observe::Monitor;
 use crate::rotation::rotation_angle;
 use crate::run::{Run, RunError, Watch};
 
+/// Blocks that go side by side, at the same places of an orbit. They stay in the second cache.
+const BLOCKS: usize = 8;
+
 /// What all members of a run have in common.
 pub(super) struct Course<'a> {
     pub(super) ensemble: &'a Ensemble,
@@ -59,7 +62,7 @@ impl Course<'_> {
             }
         }
         for kind in &mut kinds {
-            for members in kind.chunks_mut(LANES) {
+            for members in kind.chunks_mut(BLOCKS * LANES) {
                 self.together(members, &mut rows);
             }
         }
@@ -83,18 +86,19 @@ impl Course<'_> {
         })
     }
 
-    /// Takes the steps of at most [`LANES`] members of one kind.
+    /// Takes the steps of members of one kind.
     fn together(&self, members: &mut [Member], rows: &mut Rows) {
         let lanes: Vec<_> = members.iter().map(|member| (member.point, &member.side_by_side)).collect();
-        let Some(mut block) = Block::new(self.clock, &lanes) else { return };
+        let mut blocks: Vec<Block> =
+            lanes.chunks(LANES).filter_map(|lanes| Block::new(self.clock, lanes)).collect();
         let mut alive = vec![true; members.len()];
         for (time, &steps) in self.steps.iter().enumerate() {
-            block.advance(steps - block.steps(), self.ensemble.instructions);
+            Block::advance_to(&mut blocks, steps, self.ensemble.instructions);
             for ((n, member), alive) in members.iter_mut().enumerate().zip(&mut alive) {
                 if !*alive {
                     continue;
                 }
-                let x = member.step.reading(&block.point(n));
+                let x = member.step.reading(&blocks[n / LANES].point(n % LANES));
                 *alive = x.is_finite() && member.observer.see(self, member.number, time, &x, rows);
                 if *alive {
                     continue;

@@ -79,6 +79,10 @@ impl Acting {
         (acting, [c1, c2, c3, w, x, y, z, a, b, c, d, e, f, g, h, i, once, twice, 1.0 / scale])
     }
 
+    pub(super) fn is_on_orbit(&self) -> bool {
+        self.gradient.is_some()
+    }
+
     /// Where the bodies are on their orbit at the time `at`.
     pub(super) fn place(&self, at: Time) -> Option<Place<f64>> {
         self.gradient.as_ref().map(|orbit| orbit.at(at))

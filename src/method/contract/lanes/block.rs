@@ -10,6 +10,9 @@ use crate::num::{Instructions, LANES, Lane};
 /// Numbers of a point: attitude, momentum, and what rounding carries of each.
 pub(super) const PARTS: usize = 14;
 
+/// Steps whose places on the orbit are held: what a block reads anew for so many is little beside their work.
+const AT_ONCE: u64 = 256;
+
 /// Opened motions of one kind, which have taken the same number of steps.
 #[derive(Clone, Debug)]
 pub(crate) struct Block {
@@ -44,24 +47,27 @@ impl Block {
         Some(Block { kernel, acting, clock, points, constants, free, steps })
     }
 
-    /// Steps that each body has taken.
-    pub(crate) fn steps(&self) -> u64 {
-        self.steps
-    }
-
     /// The point in lane `n`.
     pub(crate) fn point(&self, n: usize) -> Point<f64> {
         Point::from_parts(self.points.map(|lane| lane[n]), self.steps)
     }
 
-    /// Takes `n` steps.
-    pub(crate) fn advance(&mut self, n: u64, instructions: Instructions) {
-        let range = self.steps..self.steps + n;
-        match instructions {
-            Instructions::Widest => kernel::widest(self, range),
-            Instructions::Avx2 => kernel::avx2(self, range),
-            Instructions::Baseline => kernel::baseline(self, range),
+    /// Steps until each of `blocks`, which are of one kind, has taken `steps`. Where their bodies are on the orbit is worked out once.
+    pub(crate) fn advance_to(blocks: &mut [Block], steps: u64, instructions: Instructions) {
+        while let Some(first) = blocks.first()
+            && first.steps < steps
+        {
+            let most = if first.acting.is_on_orbit() { AT_ONCE } else { u64::MAX };
+            let range = first.steps..steps.min(first.steps.saturating_add(most));
+            let places = first.kernel.places(&first.acting, &first.clock, range.clone());
+            for block in &mut *blocks {
+                match instructions {
+                    Instructions::Widest => kernel::widest(block, &places, range.clone()),
+                    Instructions::Avx2 => kernel::avx2(block, &places, range.clone()),
+                    Instructions::Baseline => kernel::baseline(block, &places, range.clone()),
+                }
+                block.steps = range.end;
+            }
         }
-        self.steps += n;
     }
 }

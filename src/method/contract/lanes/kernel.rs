@@ -13,7 +13,7 @@ use super::acting::{Acting, FORCES, Torques, quaternion, vector};
 use super::block::{Block, PARTS};
 use super::dmv::{self, Solves};
 use super::stages::Stages;
-use crate::body::{LinearPotential, Place, Point, Time};
+use crate::body::{Clock, LinearPotential, Place, Point, Time};
 use crate::flow::{Flow as _, FreeLanes, quarter_squared, quarters, turn_by};
 use crate::method::Map as _;
 use crate::method::contract::map::SOLVED;
@@ -122,28 +122,48 @@ impl Kernel {
             Kernel::Rk4(_) => true,
         }
     }
+
+    /// Where the bodies are on their orbit whenever the steps with the numbers `steps` ask for torques; nowhere without one.
+    pub(super) fn places(&self, acting: &Acting, clock: &Clock, steps: Range<u64>) -> Vec<Place<f64>> {
+        if !acting.is_on_orbit() {
+            return Vec::new();
+        }
+        let whole = Dd::from(clock.step);
+        let asked: Vec<Dd> = match self {
+            Kernel::Flows(flows) => {
+                let begun =
+                    |flow: &LaneFlow| if let LaneFlow::Kick(begun) = flow { Some(*begun) } else { None };
+                flows.iter().filter_map(begun).collect()
+            }
+            Kernel::FreeRk4(_) => Vec::new(),
+            Kernel::Rk4(_) => vec![Dd::ZERO, whole * 0.5, whole],
+        };
+        let place = |(step, duration): (u64, Dd)| acting.place(clock.at(step).later(duration));
+        steps.flat_map(|step| asked.iter().map(move |duration| (step, *duration))).filter_map(place).collect()
+    }
 }
 
-/// The steps with the numbers `steps`, by the widest instructions of the processor.
+/// The steps with the numbers `range` and their `places`, by the widest instructions of the processor.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
-pub(super) fn widest(block: &mut Block, range: Range<u64>) {
-    steps(block, range);
+pub(super) fn widest(block: &mut Block, places: &[Place<f64>], range: Range<u64>) {
+    steps(block, places, range);
 }
 
 /// The same by AVX2 at most.
 #[multiversion(targets("x86_64+avx2"))]
-pub(super) fn avx2(block: &mut Block, range: Range<u64>) {
-    steps(block, range);
+pub(super) fn avx2(block: &mut Block, places: &[Place<f64>], range: Range<u64>) {
+    steps(block, places, range);
 }
 
 /// The same by what the program is compiled for.
 #[inline(never)]
-pub(super) fn baseline(block: &mut Block, range: Range<u64>) {
-    steps(block, range);
+pub(super) fn baseline(block: &mut Block, places: &[Place<f64>], range: Range<u64>) {
+    steps(block, places, range);
 }
 
 #[inline(always)]
-fn steps(block: &mut Block, range: Range<u64>) {
+fn steps(block: &mut Block, places: &[Place<f64>], range: Range<u64>) {
+    let mut places = places.iter();
     let takes_forces = block.kernel.takes_forces();
     let Block { kernel, acting, clock, points, constants, free, .. } = block;
     let (numbers, constants) = constants.split_at(if takes_forces { FORCES } else { 0 });
@@ -164,10 +184,9 @@ fn steps(block: &mut Block, range: Range<u64>) {
                             let Some(free) = free.as_deref_mut() else { return };
                             flow_free(free, clock.at(step), points, constants);
                         }
-                        LaneFlow::Kick(begun) => {
+                        LaneFlow::Kick(_) => {
                             let Some(numbers) = numbers.first_chunk() else { return };
-                            let place = acting.place(clock.at(step).later(*begun));
-                            kick((acting, numbers), place.as_ref(), points, constants, &mut torques);
+                            kick((acting, numbers), places.next(), points, constants, &mut torques);
                         }
                         LaneFlow::Gradient => {
                             if let Some(constants) = all.first_chunk() {
@@ -205,8 +224,9 @@ fn steps(block: &mut Block, range: Range<u64>) {
             let Some((rk4, constants)) = constants.split_first_chunk() else { return };
             let Some(scaled) = constants.first_chunk() else { return };
             let mut stages = Stages::ZERO;
-            for step in range {
-                stages.step((acting, numbers), (rk4, scaled), clock, step, points);
+            for _ in range {
+                let places = [places.next(), places.next(), places.next()];
+                stages.step((acting, numbers), (rk4, scaled), places, points);
                 if *normalized {
                     each!(points, |n, x| x.attitude = x.attitude.normalized());
                 }

@@ -3,9 +3,9 @@
 use super::acting::{Acting, FORCES, Torques, quaternion, set_quaternion, set_vector, vector};
 use super::block::PARTS;
 use super::kernel::rk4_of;
-use crate::body::{Clock, Phase};
+use crate::body::{Phase, Place};
 use crate::method::rk4::{RK4_CONSTANTS, third};
-use crate::num::{Dd, LANES, Lane};
+use crate::num::{LANES, Lane};
 use crate::rotation::Vec3;
 
 /// Attitudes and momenta of a block, or changes of them.
@@ -52,21 +52,18 @@ impl Stages {
         middle: Phases::ZERO,
     };
 
-    /// Takes step number `step`: for each lane the operations of the scalar step in their order.
+    /// Takes a step with its beginning, middle and end at `places`: for each lane the operations of the scalar step in their order.
     #[inline(always)]
     pub(super) fn step(
         &mut self,
         (acting, numbers): (&Acting, &[Lane; FORCES]),
         (rk4, [u, v, w, rates]): (&[Lane; RK4_CONSTANTS], &[Lane; 4]),
-        clock: &Clock,
-        step: u64,
+        places: [Option<&Place<f64>>; 3],
         points: &mut [Lane; PARTS],
     ) {
         let Stages { here, omega, torques, first, middle } = self;
         let Some((q, points)) = points.split_first_chunk_mut::<4>() else { return };
         let Some((m, _)) = points.split_first_chunk_mut::<3>() else { return };
-        let (whole, begin) = (Dd::from(clock.step), clock.at(step));
-        let places = [begin, begin.later(whole * 0.5), begin.later(whole)].map(|at| acting.place(at));
 
         /// The rates at `here` under the torques in lane `n`.
         macro_rules! rates_at {
@@ -92,26 +89,26 @@ impl Stages {
             here.set(n, Phase { attitude: quaternion(q, n), momentum_body: p });
             set_vector(omega, n, p * rates[n]);
         }
-        acting.torques(numbers, places[0].as_ref(), &here.attitude, omega, torques);
+        acting.torques(numbers, places[0], &here.attitude, omega, torques);
         for n in 0..LANES {
             let k = rates_at!(n);
             first.set(n, k);
             go!(n, k);
         }
-        acting.torques(numbers, places[1].as_ref(), &here.attitude, omega, torques);
+        acting.torques(numbers, places[1], &here.attitude, omega, torques);
         for n in 0..LANES {
             let k = rates_at!(n);
             middle.set(n, k + k);
             go!(n, k);
         }
-        acting.torques(numbers, places[1].as_ref(), &here.attitude, omega, torques);
+        acting.torques(numbers, places[1], &here.attitude, omega, torques);
         for n in 0..LANES {
             let k = rates_at!(n);
             let k = k + k;
             middle.set(n, k + middle.at(n));
             go!(n, k);
         }
-        acting.torques(numbers, places[2].as_ref(), &here.attitude, omega, torques);
+        acting.torques(numbers, places[2], &here.attitude, omega, torques);
         for n in 0..LANES {
             let k = (first.at(n) + rates_at!(n)) + middle.at(n);
             let x = Phase { attitude: quaternion(q, n), momentum_body: vector(m, n) };
