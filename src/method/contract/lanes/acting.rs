@@ -13,6 +13,8 @@ pub(crate) struct Acting {
     linear: bool,
     framed: bool,
     gradient: Option<Orbit>,
+    /// Of the tensor.
+    diagonal: bool,
     drag: Option<Resistance>,
 }
 
@@ -73,6 +75,7 @@ impl Acting {
             linear: linear.is_some(),
             framed: frame.is_some(),
             gradient: gradient.as_ref().map(|gradient| gradient.1.clone()),
+            diagonal: [b, c, d, f, g, h] == [0.0; 6],
             drag: drag
                 .map(|drag| if drag.quadratic == 0.0 { Resistance::Linear } else { Resistance::Quadratic }),
         };
@@ -123,14 +126,23 @@ impl Acting {
         };
         if let Some(place) = place {
             let [a, b, c, d, e, f, g, h, i] = tensor;
-            for n in 0..LANES {
-                let tensor = [[a[n], b[n], c[n]], [d[n], e[n], f[n]], [g[n], h[n], i[n]]];
-                let one = gradient_torque(
-                    &Matrix3::from_data(nalgebra::ArrayStorage(tensor)),
-                    place,
-                    quaternion(attitudes, n),
-                );
-                set_vector(torque, n, Vec3::zero() + one);
+            if self.diagonal {
+                // products by zero are left out: they change the sign of a zero at most, which the sum does not keep
+                for n in 0..LANES {
+                    let r = quaternion(attitudes, n).rotate_back(place.direction);
+                    let one = r.cross(Vec3([a[n], e[n], i[n]]).times(r)) * place.strength;
+                    set_vector(torque, n, Vec3::zero() + one);
+                }
+            } else {
+                for n in 0..LANES {
+                    let tensor = [[a[n], b[n], c[n]], [d[n], e[n], f[n]], [g[n], h[n], i[n]]];
+                    let one = gradient_torque(
+                        &Matrix3::from_data(nalgebra::ArrayStorage(tensor)),
+                        place,
+                        quaternion(attitudes, n),
+                    );
+                    set_vector(torque, n, Vec3::zero() + one);
+                }
             }
         } else {
             *torque = [Lane::ZERO; 3];
