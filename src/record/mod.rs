@@ -1,5 +1,6 @@
 //! Records of measured angular velocity: checked row by row, split where they have gaps.
 
+mod both;
 mod bursts;
 mod clean;
 mod error;
@@ -15,6 +16,8 @@ use core::ops::Range;
 use nalgebra::Vector3;
 
 use crate::units::RateUnit;
+#[doc(hidden)]
+pub use both::both;
 use bursts::bursts;
 use clean::{Cleaned, Finding, cleaned};
 pub use error::RecordError;

@@ -3,9 +3,12 @@
 //! Source: Hampel 1974, Journal of the American Statistical Association 69, 383, with predictions in place of the median,
 //! since rates of a tumbling body have slopes.
 
+use core::ops::Range;
 use std::collections::BTreeMap;
 
 use nalgebra::Vector3;
+
+use super::both::both;
 
 /// A sample that was left out because it stands out of its neighbours, alone or with others in a burst.
 #[non_exhaustive]
@@ -54,6 +57,8 @@ const WEIGHTS: [[f64; 4]; 7] = [
     [8.0 / 3.0, -2.0, 1.0 / 3.0, 0.0],
     [8.0 / 3.0, -2.0, 1.0 / 3.0, 0.0],
 ];
+/// Samples of which two halves are gone through side by side.
+const MANY: usize = 100_000;
 /// The farthest neighbour of a set.
 const FARTHEST: usize = 4;
 /// Sets on one side of a sample, those before and those after it; of two the worse counts, as a second spike may be such that
@@ -108,7 +113,10 @@ pub(super) fn spikes(places: &[f64], rates: &[Vector3<f64>]) -> Vec<usize> {
         let mut near: Vec<f64> = around.map(|k| scores.at(k).middle).collect();
         median(&mut near).is_some_and(|near| own.middle > FAR * near)
     };
-    let mut suspects: Vec<usize> = (0..rates.len()).filter(|&i| stands_out(&scores, i)).collect();
+    let among = |range: Range<usize>| range.filter(|&i| stands_out(&scores, i)).collect::<Vec<usize>>();
+    let middle = rates.len() / 2;
+    let (mut suspects, after) = both(samples.are_many(), || among(0..middle), || among(middle..rates.len()));
+    suspects.extend(after);
     let mut left = vec![true; if suspects.is_empty() { 0 } else { rates.len() }];
     let mut found = Vec::new();
     let around = |i: usize, reach: usize| i.saturating_sub(reach)..(i + reach + 1).min(rates.len());
@@ -163,13 +171,20 @@ impl<'a> Scores<'a> {
     fn new(samples: Samples<'a>) -> Self {
         let rates = samples.rates;
         let all = vec![true; rates.len()];
-        let mut of_set: Vec<f64> = Vec::with_capacity(rates.len());
-        let usual = core::array::from_fn(|set| {
-            of_set.clear();
-            let each = (0..rates.len()).map(|i| samples.deviations(&all, i, [set])[0]);
-            of_set.extend(each.filter(|deviation| deviation.is_finite()));
-            median(&mut of_set).unwrap_or(0.0)
-        });
+        let of_sets = |sets: Range<usize>| {
+            let mut of_set: Vec<f64> = Vec::with_capacity(rates.len());
+            let each = sets.map(|set| {
+                of_set.clear();
+                let each = (0..rates.len()).map(|i| samples.deviations(&all, i, [set])[0]);
+                of_set.extend(each.filter(|deviation| deviation.is_finite()));
+                median(&mut of_set).unwrap_or(0.0)
+            });
+            each.collect::<Vec<f64>>()
+        };
+        let middle = SETS.len() / 2;
+        let (first, second) = both(samples.are_many(), || of_sets(0..middle), || of_sets(middle..SETS.len()));
+        let mut usual = [0.0; SETS.len()];
+        usual.iter_mut().zip(first.into_iter().chain(second)).for_each(|(usual, of_set)| *usual = of_set);
         Scores { samples, all, usual, changed: BTreeMap::new() }
     }
 
@@ -226,6 +241,11 @@ struct Samples<'a> {
 }
 
 impl Samples<'_> {
+    /// Whether two threads are done with them sooner than one.
+    fn are_many(&self) -> bool {
+        self.rates.len() > MANY
+    }
+
     /// The deviation of a sample from its prediction by each of some sets, in units of their noise; infinite where neighbours are missing.
     fn deviations<const N: usize>(&self, left: &[bool], i: usize, sets: [usize; N]) -> [f64; N] {
         let rates = self.rates;
@@ -382,5 +402,18 @@ mod tests {
             rate.z += 3.0;
         }
         assert!(evenly(&rates).is_empty());
+    }
+
+    /// Of many samples too, at the middle, where two threads meet, and at both ends.
+    #[test]
+    fn spikes_of_many_samples_are_those_of_few() {
+        let mut random = Random::new(5);
+        let count = MANY + 4;
+        let mut rates: Vec<Vector3<f64>> = (0..count).map(|_| random.normal_vector() * 1e-2).collect();
+        let at = [2, count / 2 - 1, count / 2 + 3, count - 3];
+        for i in at {
+            rates[i].x += 0.5;
+        }
+        assert_eq!(evenly(&rates), at);
     }
 }

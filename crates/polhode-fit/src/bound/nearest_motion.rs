@@ -5,9 +5,9 @@ use core::ops::Range;
 use std::borrow::Cow;
 
 use nalgebra::{Matrix3, SMatrix, Vector3};
+use polhode::record::both;
 
 use crate::bound::sensitivity::{Euler, Sensitivity, Start};
-use crate::signal::both::both;
 use crate::signal::stretch::Stretch;
 use crate::thresholds::radius::LONG;
 

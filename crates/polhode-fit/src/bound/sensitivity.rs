@@ -4,9 +4,9 @@ use crate::thresholds::bound::{PARTS, STEP};
 use crate::thresholds::radius::LONG;
 use core::ops::Range;
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use polhode::record::both;
 
 use crate::physical::coordinates::{Form, basis};
-use crate::signal::both::both;
 use crate::signal::terms::cross_derivative;
 
 /// ∂ω/∂(x, ω₀), or ∂ω/∂ω₀ alone where N is 3.

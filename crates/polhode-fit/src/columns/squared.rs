@@ -4,10 +4,10 @@ use core::ops::Range;
 
 use multiversion::multiversion;
 use nalgebra::Vector3;
+use polhode::record::both;
 
 use crate::columns::column::Column;
 use crate::columns::quadratic::Quadratic;
-use crate::signal::both::both;
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::{Terms, slope};
 use crate::signal::test_functions::{LANES, Seen, TestFunctions};

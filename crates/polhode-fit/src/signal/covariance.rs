@@ -2,10 +2,10 @@
 
 use multiversion::multiversion;
 use nalgebra::{Matrix3, Vector3};
+use polhode::record::both;
 
 use crate::physical::coordinates::ENTRIES;
 use crate::signal::banded::{Banded, Columns, REGISTER, Several, likelihood, likelihoods};
-use crate::signal::both::both;
 use crate::signal::moments::{Group, group, ranges};
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::{Terms, cross_derivative};

@@ -1,7 +1,6 @@
 //! Samples, test functions and their sums, and the covariance of the noise in them.
 
 pub(crate) mod banded;
-pub(crate) mod both;
 pub(crate) mod covariance;
 pub(crate) mod filtered;
 pub(crate) mod moments;

@@ -7,8 +7,8 @@ use core::ops::Range;
 
 use multiversion::multiversion;
 use nalgebra::{Matrix3, Vector3};
+use polhode::record::both;
 
-use crate::signal::both::both;
 use crate::signal::stretch::{KnownInputs, Stretch};
 use crate::signal::test_functions::{LANES, Seen, TestFunctions};
 

@@ -1,7 +1,8 @@
 //! The torque noise of a stretch, and the noise of its rates, by restricted likelihood.
 
+use polhode::record::both;
+
 use crate::signal::banded::REGISTER;
-use crate::signal::both::both;
 use crate::signal::covariance::{Covariance, Levels, Shape};
 use crate::thresholds::levels::{BETWEEN, DECADES, FIRST_DECADE, GAIN, RESHAPED, SECTIONS, STEP};
 use crate::thresholds::radius::LONG;

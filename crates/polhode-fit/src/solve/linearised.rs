@@ -3,11 +3,11 @@
 use crate::solve::rows::rows;
 use multiversion::multiversion;
 use nalgebra::{Matrix3, Vector3};
+use polhode::record::both;
 
 use crate::columns::column::{Column, Unknowns, terms_of};
 use crate::physical::coordinates::{Form, basis};
 use crate::signal::banded::Banded;
-use crate::signal::both::both;
 use crate::signal::covariance::{Covariance, Levels};
 use crate::signal::moments::groups;
 use crate::signal::stretch::Stretch;

@@ -3,6 +3,7 @@
 use core::ops::Range;
 
 use nalgebra::{Matrix3, Vector3};
+use polhode::record::both;
 use polhode::rotation::Quat;
 
 use crate::columns::column::{Column, Unknowns, terms_of};
@@ -10,7 +11,6 @@ use crate::columns::effect::SampleChange;
 use crate::columns::equation::{Corrected, Equation, crossed};
 use crate::columns::squared::Squared;
 use crate::physical::coordinates::basis;
-use crate::signal::both::both;
 use crate::signal::moments::{Moments, group, ranges};
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::Terms;

@@ -5,11 +5,8 @@ use std::thread::{Builder, scope};
 
 /// Both results, the first by a thread of its own where the work is `long` and the system has one. What each computes does not depend
 /// on that.
-pub(crate) fn both<A: Send, B>(
-    long: bool,
-    first: impl FnOnce() -> A + Send,
-    second: impl FnOnce() -> B,
-) -> (A, B) {
+#[doc(hidden)]
+pub fn both<A: Send, B>(long: bool, first: impl FnOnce() -> A + Send, second: impl FnOnce() -> B) -> (A, B) {
     if !long {
         return (first(), second());
     }
