@@ -311,7 +311,8 @@ impl Body {
         others: impl Iterator<Item = Force>,
     ) -> Forces<S> {
         let frame = (!self.inertia.is_along_principal_axes()).then(|| self.inertia.frame());
-        Forces::new(linear, others, frame, self.scale(), self.locked.is_none(), self.witness.clone())
+        let tensor = self.locked.is_none().then(|| self.inertia.tensor());
+        Forces::new(linear, others, frame, self.scale(), tensor, self.witness.clone())
     }
 
     /// Kinetic and potential energy, J, at the time 0, where a potential depends on the time.

@@ -2,8 +2,11 @@
 
 use std::sync::{Arc, OnceLock};
 
+use nalgebra::Matrix3;
+
+use super::gravity_gradient::{GravityGradient, gradient_torque};
 use super::law::Evaluated;
-use super::{Force, LinearPotential, Orbit, Time};
+use super::{Force, LinearPotential, Orbit, Place, Time};
 use crate::num::{Dd, Real, Series, Tape};
 use crate::rotation::{Quat, Vec3};
 
@@ -51,6 +54,28 @@ pub trait Field<S: Real>: Clone + Send + Sync + 'static {
         let rest = self.remainder(at, attitude, omega_body);
         self.linear_part().map_or(rest, |linear| linear.torque(attitude) + rest)
     }
+
+    /// The time `at`, with what the torque takes from it alone: stages of a step that share a time share this, and it does not wait
+    /// for their attitudes.
+    #[doc(hidden)]
+    #[inline(always)]
+    fn instant(&self, at: Time) -> Instant<S> {
+        Instant { at, place: None }
+    }
+
+    /// As [`torque`](Self::torque), at an [`instant`](Self::instant).
+    #[doc(hidden)]
+    #[inline(always)]
+    fn torque_at(&self, instant: &Instant<S>, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S> {
+        self.torque(instant.at, attitude, omega_body)
+    }
+}
+
+/// A time, and where a gravity gradient has the body then.
+#[derive(Clone, Copy, Debug)]
+pub struct Instant<S> {
+    at: Time,
+    place: Option<Place<S>>,
 }
 
 /// Nothing acts: free motion.
@@ -93,6 +118,9 @@ pub(crate) struct Forces<S> {
     others: Arc<[Force]>,
     /// Which of them is a gravity gradient on a conic.
     gradient: Option<usize>,
+    /// The gravity gradient, where it is the only one of them and acts always. Its torque is worked out in the step itself: handed on
+    /// through memory, attitude and torque are waited for longer than it takes.
+    alone: Option<Arc<GravityGradient>>,
     /// Takes coordinates along principal axes to body coordinates; `None` where they are the same.
     frame: Option<Quat<S>>,
     /// What divides the torque.
@@ -117,19 +145,25 @@ pub(crate) struct Failure {
 pub(crate) type Witness = Arc<OnceLock<Failure>>;
 
 impl<S: Evaluated> Forces<S> {
-    /// Of a body that `is_whole` the inertia of the rotor is all there is: none is that of wheels which turn freely.
+    /// `tensor`, kg m², body axes, is that of the rotor where there is no other inertia, of wheels which turn freely.
     pub(super) fn new(
         linear: Option<LinearPotential<S>>,
         others: impl Iterator<Item = Force>,
         frame: Option<Quat<Dd>>,
         scale: f64,
-        is_whole: bool,
+        tensor: Option<Matrix3<f64>>,
         witness: Option<Witness>,
     ) -> Self {
         let frame = frame.map(|frame| frame.map(S::from_dd));
         let others: Arc<[Force]> = others.collect();
-        let gradient = others.iter().position(|force| is_whole && force.conic().is_some());
-        Forces { linear, others, gradient, frame, scale, witness }
+        let gradient = others.iter().position(|force| tensor.is_some() && force.conic().is_some());
+        let alone = match (&*others, tensor, &witness) {
+            ([force], Some(tensor), None) if force.switched.is_none() => {
+                force.orbit.clone().map(|orbit| Arc::new(GravityGradient { tensor, orbit }))
+            }
+            _ => None,
+        };
+        Forces { linear, others, gradient, alone, frame, scale, witness }
     }
 
     /// Potential energy, divided by the scale.
@@ -191,6 +225,32 @@ impl<S: Evaluated> Field<S> for Forces<S> {
         self.linear.as_ref()
     }
 
+    #[inline(always)]
+    fn torque(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S> {
+        self.torque_at(&self.instant(at), attitude, omega_body)
+    }
+
+    #[inline(always)]
+    fn instant(&self, at: Time) -> Instant<S> {
+        // in double-double the code would be long, and the arithmetic is what is waited for
+        let alone = if const { S::ROUNDOFF < f64::ROUNDOFF } { None } else { self.alone.as_ref() };
+        Instant { at, place: alone.map(|gradient| gradient.orbit.at(at)) }
+    }
+
+    #[inline(always)]
+    fn torque_at(&self, instant: &Instant<S>, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S> {
+        let rest = match (&self.alone, &instant.place) {
+            (Some(gradient), Some(place)) => {
+                // operation by operation as in the sum over all
+                let attitude = self.frame.map_or(attitude, |frame| attitude * frame.conjugate());
+                let torque = Vec3::zero() + gradient_torque(&gradient.tensor, place, attitude);
+                self.frame.map_or(torque, |frame| frame.rotate_back(torque)) * S::of(1.0 / self.scale)
+            }
+            _ => self.remainder(instant.at, attitude, omega_body),
+        };
+        self.linear.map_or(rest, |linear| linear.torque(attitude) + rest)
+    }
+
     #[inline(never)]
     fn remainder(&self, at: Time, attitude: Quat<S>, omega_body: Vec3<S>) -> Vec3<S> {
         let evaluate = |force: &Force, attitude, omega| Some(S::torque(&force.law, at, attitude, omega));
@@ -230,6 +290,41 @@ impl<S: Evaluated> Field<S> for Forces<S> {
     fn not_finite(&self, at: Time, force: usize) {
         if let Some(force) = self.others.get(force) {
             self.note(at, force);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{Body, Clock};
+    use crate::inertia::Inertia;
+
+    /// A gravity gradient alone has the bits that it has in the sum over all forces, on every kind of orbit, along principal axes and
+    /// not, with a weight beside it and without.
+    #[test]
+    fn a_gradient_alone_is_that_of_the_sum() {
+        let tensor = Matrix3::new(1.0, 0.2, -0.1, 0.2, 2.3, 0.05, -0.1, 0.05, 2.9);
+        let inertias = [Inertia::from_moments([1.0, 2.3, 2.9]), Inertia::from_tensor(tensor)];
+        let bodies = inertias.map(Result::unwrap).map(|inertia| {
+            [Body::free(inertia.clone()), Body::heavy(inertia, [0.3, -0.2, 0.7].into()).unwrap()]
+        });
+        let tilted = Orbit::conic(0.7, 2.0, 1.4).unwrap().in_plane([0.3, 0.8, 1.1]).unwrap();
+        let orbits = [Orbit::ellipse(0.31, 0.0).unwrap(), Orbit::ellipse(0.2, 0.7).unwrap(), tilted];
+        for body in bodies.as_flattened() {
+            for orbit in &orbits {
+                let body = body.clone().with(Force::gravity_gradient_on(orbit.clone()));
+                let alone = body.field::<f64>();
+                let summed = body.witnessed(Witness::default()).field::<f64>();
+                assert!(alone.alone.is_some() && summed.alone.is_none());
+                for n in 0..100 {
+                    let at = Clock::new(0.3).at(n / 2).later(Dd::of(0.15));
+                    let q = Quat::exponential(Vec3([0.3, -0.1 * n as f64, 0.7]));
+                    let [one, other] =
+                        [&alone, &summed].map(|field| field.torque(at, q, Vec3::zero()).0.map(f64::to_bits));
+                    assert_eq!(one, other, "{orbit:?} at {n}");
+                }
+            }
         }
     }
 }

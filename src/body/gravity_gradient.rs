@@ -15,9 +15,9 @@ const NAME: &str = "gravity gradient";
 /// `τ = 3 GM/r³ r̂ × I r̂`; on an ellipse GM = n² a³ with the mean motion n and the semi-major axis a (Hughes, Spacecraft
 /// Attitude Dynamics, §8.1; the part of the potential that does not depend on the attitude is left out).
 #[derive(Clone, Debug)]
-struct GravityGradient {
-    tensor: Matrix3<f64>,
-    orbit: Orbit,
+pub(super) struct GravityGradient {
+    pub(super) tensor: Matrix3<f64>,
+    pub(super) orbit: Orbit,
 }
 
 impl Force {

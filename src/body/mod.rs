@@ -28,6 +28,8 @@ pub use body::{Body, Problem};
 pub(crate) use drag::Drag;
 pub use error::{ForceError, StateError};
 pub(crate) use exit::Exit;
+#[doc(hidden)]
+pub use field::Instant;
 pub use field::{Field, Free};
 pub(crate) use field::{Forces, Witness};
 pub use force::Force;

@@ -256,8 +256,15 @@ impl Orbit {
         (self.eccentricity == 0.0 && self.plane.is_none()).then_some(rate)
     }
 
+    #[inline(always)]
     pub(crate) fn at<S: Real>(&self, at: Time) -> Place<S> {
-        let (strength, direction) = self.seen(self.since_passage(at));
+        self.after(self.since_passage(at))
+    }
+
+    /// `time` (s) since the least distance; apart from what makes that time, which stages of a step share.
+    #[inline(never)]
+    fn after<S: Real>(&self, time: Dd) -> Place<S> {
+        let (strength, direction) = self.seen(time);
         let direction = match self.plane {
             None => direction,
             Some(plane) => plane.map(S::from_dd).rotate(direction),
@@ -266,6 +273,7 @@ impl Orbit {
     }
 
     /// The time since the least distance, s.
+    #[inline(always)]
     fn since_passage(&self, at: Time) -> Dd {
         // the bits of a time from which nothing is taken stay
         let at = if self.passage == 0.0 { at } else { at.later(Dd::of(-self.passage)) };

@@ -41,7 +41,7 @@ impl Clock {
         self.product(steps) + 0.0
     }
 
-    #[inline]
+    #[inline(always)]
     fn product(&self, steps: u64) -> Dd {
         let (high, low) = (steps >> 32, steps & 0xffff_ffff);
         let product = Dd::product(low as f64, self.step);
@@ -81,13 +81,13 @@ impl Time {
     }
 
     /// Time since the start, s.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn elapsed(&self) -> Dd {
         self.clock.product(self.steps) + self.offset
     }
 
     /// In seconds, exact to the digits of double-double.
-    #[inline]
+    #[inline(always)]
     pub fn dd(&self) -> Dd {
         let elapsed = self.elapsed();
         // most runs start at 0, and forces ask at every stage

@@ -1,6 +1,6 @@
 //! The classical Runge–Kutta method, `rk4` and `rk4-normalized`.
 
-use crate::body::{Field, Phase, Point, Problem, Rotor, Time};
+use crate::body::{Field, Instant, Phase, Point, Problem, Rotor, Time};
 use crate::method::contract::lanes::Kernel;
 use crate::method::runge_kutta::claims;
 use crate::method::{Claimed, Claims, Map, Method, SideBySide};
@@ -177,12 +177,14 @@ impl<S: Real> Rk4Step<S> {
         scaled: &Scaled<S>,
         x: Phase<S>,
     ) -> Phase<S> {
+        // all before the first of them is needed: they do not wait for each other
+        let (begin, middle, end) = (field.instant(begin), field.instant(middle), field.instant(end));
         let (q, p) = (x.attitude, self.scaled(x.momentum_body));
-        let (k1, l1) = self.rate(begin, field, scaled, q, p);
-        let (k2, l2) = self.rate(middle, field, scaled, q + k1, p + l1);
-        let (k3, l3) = self.rate(middle, field, scaled, q + k2, p + l2);
+        let (k1, l1) = self.rate(&begin, field, scaled, q, p);
+        let (k2, l2) = self.rate(&middle, field, scaled, q + k1, p + l1);
+        let (k3, l3) = self.rate(&middle, field, scaled, q + k2, p + l2);
         let (k3, l3) = (k3 + k3, l3 + l3);
-        let (k4, l4) = self.rate(end, field, scaled, q + k3, p + l3);
+        let (k4, l4) = self.rate(&end, field, scaled, q + k3, p + l3);
         let (k, l) = ((k1 + k4) + (k3 + (k2 + k2)), (l1 + l4) + (l3 + (l2 + l2)));
         self.moved(x, k * third::<S>(), l)
     }
@@ -191,14 +193,14 @@ impl<S: Real> Rk4Step<S> {
     #[inline(always)]
     fn rate<F: Field<S>>(
         &self,
-        at: Time,
+        at: &Instant<S>,
         field: &F,
         scaled: &Scaled<S>,
         q: Quat<S>,
         p: Vec3<S>,
     ) -> (Quat<S>, Vec3<S>) {
         let (attitude, turned) = self.free_rate(q, p);
-        (attitude, turned + field.torque(at, q, p * scaled.rate).times(scaled.torque))
+        (attitude, turned + field.torque_at(at, q, p * scaled.rate).times(scaled.torque))
     }
 
     /// The same without forces.
