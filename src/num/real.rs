@@ -64,6 +64,11 @@ pub trait Real:
         let (s, c) = self.sin_cos();
         (s, Self::of(1.0) - c)
     }
+    /// The same of an angle of at most π/4, where `f64` needs no branch.
+    #[inline]
+    fn sin_versine_moderate(self) -> (Self, Self) {
+        self.sin_versine()
+    }
     /// The same of an angle of at most [`SMALL`](trig::SMALL), where `f64` needs fewer operations.
     #[inline]
     fn sin_versine_small(self) -> (Self, Self) {
@@ -146,6 +151,10 @@ impl Real for f64 {
     #[inline]
     fn sin_versine(self) -> (Self, Self) {
         trig::sin_versine(self)
+    }
+    #[inline(always)]
+    fn sin_versine_moderate(self) -> (Self, Self) {
+        trig::sin_versine_moderate(self)
     }
     #[inline(always)]
     fn sin_versine_small(self) -> (Self, Self) {

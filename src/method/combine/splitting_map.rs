@@ -2,6 +2,7 @@
 
 use super::processor::{Processor, Timed};
 use crate::body::{Clock, Point, Time};
+use crate::method::contract::fill_in_turn;
 use crate::method::{Map, SideBySide};
 use crate::num::{Dd, Real};
 
@@ -100,6 +101,14 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
         for _ in 0..n {
             self.advance(clock.at(x.steps()), x);
             x.count_steps(1);
+        }
+    }
+
+    #[inline]
+    fn fill(&mut self, clock: &Clock, x: &mut Point<S>, block: &mut [Point<S>]) {
+        match (&self.ends, &mut self.pairs[..]) {
+            (Ends::OfA, [(a, _)]) if self.processor.is_empty() => a.map.fill(clock, x, block),
+            _ => fill_in_turn(self, clock, x, block),
         }
     }
 

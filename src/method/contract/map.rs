@@ -131,6 +131,13 @@ pub trait Map<S: Real>: Send + 'static {
         }
     }
 
+    /// As [`Step::fill`].
+    #[doc(hidden)]
+    #[inline]
+    fn fill(&mut self, clock: &Clock, x: &mut Point<S>, block: &mut [Point<S>]) {
+        fill_in_turn(self, clock, x, block);
+    }
+
     /// Takes that form to one with the energy and the momenta of the state, from which it differs by no more than a turn
     /// about the momentum.
     #[inline]
@@ -199,6 +206,9 @@ impl<S: Real> Map<S> for Box<dyn Map<S>> {
     fn advance_by(&mut self, n: u64, clock: &Clock, x: &mut Point<S>) {
         (**self).advance_by(n, clock, x);
     }
+    fn fill(&mut self, clock: &Clock, x: &mut Point<S>, block: &mut [Point<S>]) {
+        (**self).fill(clock, x, block);
+    }
     fn close(&mut self, at: Time, x: &mut Point<S>) {
         (**self).close(at, x);
     }
@@ -232,6 +242,24 @@ impl<S: Real> Map<S> for Box<dyn Map<S>> {
     fn stuck(&self) -> Option<Stuck> {
         (**self).stuck()
     }
+}
+
+/// [`Map::fill`] step by step. The point is one's own, so that what is inlined keeps it in registers: a copy of one that has just been
+/// written has to wait for it, and the next step with it.
+#[inline(always)]
+pub(in crate::method) fn fill_in_turn<S: Real, M: Map<S> + ?Sized>(
+    map: &mut M,
+    clock: &Clock,
+    x: &mut Point<S>,
+    block: &mut [Point<S>],
+) {
+    let mut moved = *x;
+    for place in block {
+        map.advance_by(1, clock, &mut moved);
+        *place = moved;
+        map.close(clock.at(moved.steps()), place);
+    }
+    *x = moved;
 }
 
 /// An implicit solve that ends further than this from its equation, relative, is no solution: the invariants would be
@@ -380,11 +408,7 @@ impl<S: Real, M: Map<S>> Step<S> for Stepper<M> {
     }
 
     fn fill(&mut self, x: &mut Point<S>, block: &mut [Point<S>]) {
-        for place in block {
-            self.advance(x, 1);
-            *place = *x;
-            self.map.close(self.clock.at(x.steps()), place);
-        }
+        self.map.fill(&self.clock, x, block);
     }
 
     fn memory(&self) -> Vec<f64> {

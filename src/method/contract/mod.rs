@@ -17,6 +17,7 @@ pub use claims::{Claimed, Claims, Cost, Energy, Kept};
 pub use lanes::SideBySide;
 pub use listing::{Listing, listing};
 pub(crate) use map::SOLVED;
+pub(super) use map::fill_in_turn;
 pub use map::{Map, Method, Step, Stuck, Work};
 pub use name::{UnknownMethod, method};
 pub(super) use own_steps::OwnSteps;

@@ -159,6 +159,11 @@ impl<S: Precise> Map<S> for AxisSplitMap<S> {
         self.turns().advance_by(n, x);
     }
 
+    #[inline]
+    fn fill(&mut self, _: &Clock, x: &mut Point<S>, block: &mut [Point<S>]) {
+        self.turns().fill(x, block);
+    }
+
     fn side_by_side(&self) -> Option<SideBySide<S>> {
         self.turns.as_ref()?.side_by_side()
     }

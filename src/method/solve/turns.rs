@@ -1,9 +1,10 @@
 //! Turns about principal axes, one after another: what splittings of the kinetic energy are made of.
 
 use core::f64::consts::FRAC_PI_4;
+use core::slice::IterMut;
 
 use crate::body::{Point, RENORMALIZE_EVERY};
-use crate::flow::{turn_a_little_about, turn_about, turn_about_axis};
+use crate::flow::{turn_a_little_about, turn_about, turn_about_axis, turn_by};
 use crate::method::SideBySide;
 use crate::method::combine::lengths;
 use crate::method::contract::lanes::{LaneFlow, Width};
@@ -113,6 +114,20 @@ impl<S: Precise> Turns<S> {
         }
     }
 
+    /// As [`Map::fill`](crate::method::Map::fill); where the turns are small the point stays in registers from step to step.
+    pub(in crate::method) fn fill(&self, x: &mut Point<S>, block: &mut [Point<S>]) {
+        if const { S::ROUNDOFF >= f64::ROUNDOFF } && self.small {
+            let n = block.len() as u64;
+            let each = Filling { places: block.iter_mut(), back: -self.first };
+            return self.axes.turn_apart::<true, S>(&self.cycle, n, x, each);
+        }
+        for place in block {
+            self.advance_by(1, x);
+            *place = *x;
+            self.close(place);
+        }
+    }
+
     fn renormalize_every(&self) -> u64 {
         if self.small { RENORMALIZE_SMALL_EVERY } else { RENORMALIZE_EVERY }
     }
@@ -187,28 +202,65 @@ impl Axes {
         if const { S::ROUNDOFF < f64::ROUNDOFF } {
             (0..n).for_each(|_| self.in_turn(turns, x));
         } else if small {
-            self.turn_apart::<true, S>(turns, n, x);
+            self.turn_apart::<true, S>(turns, n, x, ());
         } else {
-            self.turn_apart::<false, S>(turns, n, x);
+            self.turn_apart::<false, S>(turns, n, x, ());
         }
     }
 
     /// The same, for each order of the axes apart: they are constants inside, and the point is one's own, so that it stays in registers.
     #[inline]
-    fn turn_apart<const SMALL: bool, S: Real>(&self, turns: &[S], n: u64, x: &mut Point<S>) {
+    fn turn_apart<const SMALL: bool, S: Real>(
+        &self,
+        turns: &[S],
+        n: u64,
+        x: &mut Point<S>,
+        each: impl Each<S>,
+    ) {
         match self {
-            Axes::Two([0, 1]) => two::<0, 1, SMALL, S>(turns, n, x),
-            Axes::Two([0, _]) => two::<0, 2, SMALL, S>(turns, n, x),
-            Axes::Two([1, 0]) => two::<1, 0, SMALL, S>(turns, n, x),
-            Axes::Two([1, _]) => two::<1, 2, SMALL, S>(turns, n, x),
-            Axes::Two([_, 0]) => two::<2, 0, SMALL, S>(turns, n, x),
-            Axes::Two(_) => two::<2, 1, SMALL, S>(turns, n, x),
-            Axes::Three([0, 1, _]) => three::<0, 1, 2, SMALL, S>(turns, n, x),
-            Axes::Three([0, ..]) => three::<0, 2, 1, SMALL, S>(turns, n, x),
-            Axes::Three([1, 0, _]) => three::<1, 0, 2, SMALL, S>(turns, n, x),
-            Axes::Three([1, ..]) => three::<1, 2, 0, SMALL, S>(turns, n, x),
-            Axes::Three([_, 0, _]) => three::<2, 0, 1, SMALL, S>(turns, n, x),
-            Axes::Three(_) => three::<2, 1, 0, SMALL, S>(turns, n, x),
+            Axes::Two([0, 1]) => two::<0, 1, SMALL, S>(turns, n, x, each),
+            Axes::Two([0, _]) => two::<0, 2, SMALL, S>(turns, n, x, each),
+            Axes::Two([1, 0]) => two::<1, 0, SMALL, S>(turns, n, x, each),
+            Axes::Two([1, _]) => two::<1, 2, SMALL, S>(turns, n, x, each),
+            Axes::Two([_, 0]) => two::<2, 0, SMALL, S>(turns, n, x, each),
+            Axes::Two(_) => two::<2, 1, SMALL, S>(turns, n, x, each),
+            Axes::Three([0, 1, _]) => three::<0, 1, 2, SMALL, S>(turns, n, x, each),
+            Axes::Three([0, ..]) => three::<0, 2, 1, SMALL, S>(turns, n, x, each),
+            Axes::Three([1, 0, _]) => three::<1, 0, 2, SMALL, S>(turns, n, x, each),
+            Axes::Three([1, ..]) => three::<1, 2, 0, SMALL, S>(turns, n, x, each),
+            Axes::Three([_, 0, _]) => three::<2, 0, 1, SMALL, S>(turns, n, x, each),
+            Axes::Three(_) => three::<2, 1, 0, SMALL, S>(turns, n, x, each),
+        }
+    }
+}
+
+/// What follows the turns of a step.
+trait Each<S> {
+    fn step<const OUTER: usize>(&mut self, x: &mut Point<S>);
+}
+
+impl<S> Each<S> for () {
+    #[inline(always)]
+    fn step<const OUTER: usize>(&mut self, _: &mut Point<S>) {}
+}
+
+/// Ends a step of small turns, and leaves it in the next place without the first turn of the step after it.
+struct Filling<'a, S> {
+    places: IterMut<'a, Point<S>>,
+    back: S,
+}
+
+impl<S: Real> Each<S> for Filling<'_, S> {
+    #[inline(always)]
+    fn step<const OUTER: usize>(&mut self, x: &mut Point<S>) {
+        x.renormalize_every(RENORMALIZE_SMALL_EVERY);
+        x.count_steps(1);
+        if let Some(place) = self.places.next() {
+            // one's own: a copy of what has just been written has to wait for it
+            let mut closed = *x;
+            let half = closed.momentum_body[OUTER] * self.back;
+            turn_by::<OUTER, S>(&mut closed, half.sin_versine_moderate());
+            *place = closed;
         }
     }
 }
@@ -217,6 +269,7 @@ fn two<const OUTER: usize, const INNER: usize, const SMALL: bool, S: Real>(
     turns: &[S],
     n: u64,
     x: &mut Point<S>,
+    mut each: impl Each<S>,
 ) {
     let mut moved = *x;
     for _ in 0..n {
@@ -224,6 +277,7 @@ fn two<const OUTER: usize, const INNER: usize, const SMALL: bool, S: Real>(
             turn::<INNER, SMALL, S>(&mut moved, inner);
             turn::<OUTER, SMALL, S>(&mut moved, outer);
         }
+        each.step::<OUTER>(&mut moved);
     }
     *x = moved;
 }
@@ -232,6 +286,7 @@ fn three<const OUTER: usize, const MIDDLE: usize, const INNER: usize, const SMAL
     turns: &[S],
     n: u64,
     x: &mut Point<S>,
+    mut each: impl Each<S>,
 ) {
     let mut moved = *x;
     for _ in 0..n {
@@ -241,6 +296,7 @@ fn three<const OUTER: usize, const MIDDLE: usize, const INNER: usize, const SMAL
             turn::<MIDDLE, SMALL, S>(&mut moved, behind);
             turn::<OUTER, SMALL, S>(&mut moved, outer);
         }
+        each.step::<OUTER>(&mut moved);
     }
     *x = moved;
 }
@@ -248,4 +304,38 @@ fn three<const OUTER: usize, const MIDDLE: usize, const INNER: usize, const SMAL
 #[inline(always)]
 fn turn<const AXIS: usize, const SMALL: bool, S: Real>(x: &mut Point<S>, half_rate: S) {
     if SMALL { turn_a_little_about::<AXIS, S>(x, half_rate) } else { turn_about::<AXIS, S>(x, half_rate) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::method::schemes::STRANG;
+    use crate::rotation::{Quat, Vec3};
+
+    /// The places of a block have the bits of steps that are taken one at a time and closed, of turns that are small and of others.
+    #[test]
+    fn a_block_holds_the_steps_taken_one_at_a_time() {
+        let orders = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+        for (h, small) in [(0.01, true), (-0.02, true), (0.5, false)] {
+            let rates = [-0.7, 0.4, 1.1].map(|rate| Dd::of(rate * h));
+            for order in orders {
+                let [a, b, _] = order;
+                let two = Turns::<f64>::two([a, b], [rates[0], rates[1]], &STRANG);
+                for mut turns in [two, Turns::three(order, rates, &[Dd::ONE])] {
+                    let mut x = Point::new(Quat::identity(), Vec3([0.4, 2.0, -0.9]));
+                    turns.open(&mut x);
+                    assert_eq!(turns.small, small);
+                    let (mut alone, mut block) = (x, [x; 100]);
+                    turns.fill(&mut x, &mut block);
+                    for place in block {
+                        turns.advance_by(1, &mut alone);
+                        let mut closed = alone;
+                        turns.close(&mut closed);
+                        assert_eq!(place, closed);
+                    }
+                    assert_eq!(x, alone);
+                }
+            }
+        }
+    }
 }
