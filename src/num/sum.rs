@@ -29,6 +29,12 @@ impl<S: Real> Compensated<S> {
         Compensated { sum: start, carry: S::of(0.0) }
     }
 
+    /// A sum that starts at the number `high + low`.
+    #[inline(always)]
+    pub(crate) fn of([high, low]: [S; 2]) -> Self {
+        Compensated { sum: high, carry: low }
+    }
+
     /// A sum that starts at minus the number `high + low`.
     #[inline(always)]
     pub(crate) fn minus([high, low]: [S; 2]) -> Self {

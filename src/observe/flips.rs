@@ -16,7 +16,7 @@ impl Flips {
     }
 
     #[inline]
-    pub(crate) fn observe(&mut self, m: Vec3<f64>) {
+    pub(crate) fn observe(&mut self, m: &Vec3<f64>) {
         let component = m[self.axis];
         if component == 0.0 {
             return;

@@ -90,24 +90,18 @@ impl Reference {
 
     /// |E − E₀|, ||m|² − |m₀|²| and |L − L₀| of each point, without forces.
     pub(super) fn free(&self, points: &[Point<f64>]) -> [Lane; 3] {
-        self.settled(free(self, &Lanes::of(points)))
+        free(self, &Lanes::of(points))
     }
 
     /// |E − E₀| and |L_z − L_z₀| of each point, in a linear potential.
     pub(super) fn heavy(&self, points: &[Point<f64>]) -> [Lane; 2] {
-        self.settled(heavy(self, &Lanes::of(points)))
+        heavy(self, &Lanes::of(points))
     }
 
     /// The change of Jacobi's constant at each point, by the gravity gradient on a circle alone.
     pub(super) fn circular(&self, circle: &mut Circle, points: &[Point<f64>]) -> [Lane; 1] {
         let directions = circle.directions(points.iter().map(Point::steps));
-        self.settled(circular(self, circle, &directions, &Lanes::of(points)))
-    }
-
-    fn settled<const N: usize>(&self, differences: [Lane; N]) -> [Lane; N] {
-        // a NaN stays
-        let settled = |d: f64| if self.ordinary && d < NOTHING { 0.0 } else { d };
-        differences.map(|lane| lane.map(settled))
+        circular(self, circle, &directions, &Lanes::of(points))
     }
 
     // No loops over components below: only the innermost loop, that over the points, is vectorised.
@@ -136,16 +130,13 @@ impl Reference {
         let (w, Vec3([x, y, z])) = (q.w, q.v);
         // 2 U = c · 2Γ, with ½Γ₁ = xz − wy, ½Γ₂ = yz + wx and Γ₃ = w² + z² − x² − y²
         let [high, low] = self.moment;
-        let mut vertical = Compensated::new(0.0);
-        vertical.add_product_by::<FUSED>(x, z);
+        let mut vertical = Compensated::of_product::<FUSED>(x, z);
         vertical.add_product_by::<FUSED>(-w, y);
         twice_energy.add_scaled_by::<FUSED>(vertical, [4.0 * high[0], 4.0 * low[0]]);
-        let mut vertical = Compensated::new(0.0);
-        vertical.add_product_by::<FUSED>(y, z);
+        let mut vertical = Compensated::of_product::<FUSED>(y, z);
         vertical.add_product_by::<FUSED>(w, x);
         twice_energy.add_scaled_by::<FUSED>(vertical, [4.0 * high[1], 4.0 * low[1]]);
-        let mut vertical = Compensated::new(0.0);
-        vertical.add_square::<FUSED>(w);
+        let mut vertical = Compensated::of_product::<FUSED>(w, w);
         vertical.add_square::<FUSED>(z);
         vertical.add_product_by::<FUSED>(-x, x);
         vertical.add_product_by::<FUSED>(-y, y);
@@ -165,44 +156,33 @@ impl Reference {
     ) -> [f64; 1] {
         let [[a, b], [c, d]] = directions;
         let [[a, b], [c, d]] = [[a, b], [c, d]].map(|angle| angle.map(|[high, low]| [high[n], low[n]]));
-        let mut cosine = Compensated::new(0.0);
-        cosine.add_product_of_parts::<FUSED>(a, c);
+        let mut cosine = Compensated::of_product_of_parts::<FUSED>(a, c);
         cosine.add_product_of_parts::<FUSED>(b.map(|b| -b), d);
-        let mut sine = Compensated::new(0.0);
-        sine.add_product_of_parts::<FUSED>(a, d);
+        let mut sine = Compensated::of_product_of_parts::<FUSED>(a, d);
         sine.add_product_of_parts::<FUSED>(b, c);
         let (cosine, sine) = (cosine.parts(), sine.parts());
         let (w, Vec3([x, y, z])) = (q.w, q.v);
         // r̂ = cos X + sin Y, of the rows X and Y of the rotation, off the diagonal by their halves
-        let mut along = Compensated::new(0.0);
-        along.add_square::<FUSED>(w);
+        let mut along = Compensated::of_product::<FUSED>(w, w);
         along.add_square::<FUSED>(x);
         along.add_product_by::<FUSED>(-y, y);
         along.add_product_by::<FUSED>(-z, z);
-        let mut first = Compensated::new(0.0);
-        first.add_scaled_by::<FUSED>(along, cosine);
-        let mut half = Compensated::new(0.0);
-        half.add_product_by::<FUSED>(x, y);
+        let mut first = Compensated::of_product_of_parts::<FUSED>(along.parts(), cosine);
+        let mut half = Compensated::of_product::<FUSED>(x, y);
         half.add_product_by::<FUSED>(w, z);
         first.add_scaled_by::<FUSED>(half, sine.map(|s| 2.0 * s));
-        let mut along = Compensated::new(0.0);
-        along.add_square::<FUSED>(w);
+        let mut along = Compensated::of_product::<FUSED>(w, w);
         along.add_square::<FUSED>(y);
         along.add_product_by::<FUSED>(-x, x);
         along.add_product_by::<FUSED>(-z, z);
-        let mut second = Compensated::new(0.0);
-        second.add_scaled_by::<FUSED>(along, sine);
-        let mut half = Compensated::new(0.0);
-        half.add_product_by::<FUSED>(x, y);
+        let mut second = Compensated::of_product_of_parts::<FUSED>(along.parts(), sine);
+        let mut half = Compensated::of_product::<FUSED>(x, y);
         half.add_product_by::<FUSED>(-w, z);
         second.add_scaled_by::<FUSED>(half, cosine.map(|c| 2.0 * c));
-        let mut half = Compensated::new(0.0);
-        half.add_product_by::<FUSED>(x, z);
+        let mut half = Compensated::of_product::<FUSED>(x, z);
         half.add_product_by::<FUSED>(w, y);
-        let mut third = Compensated::new(0.0);
-        third.add_scaled_by::<FUSED>(half, cosine.map(|c| 2.0 * c));
-        let mut half = Compensated::new(0.0);
-        half.add_product_by::<FUSED>(y, z);
+        let mut third = Compensated::of_product_of_parts::<FUSED>(half.parts(), cosine.map(|c| 2.0 * c));
+        let mut half = Compensated::of_product::<FUSED>(y, z);
         half.add_product_by::<FUSED>(-w, x);
         third.add_scaled_by::<FUSED>(half, sine.map(|s| 2.0 * s));
         let r = [first.parts(), second.parts(), third.parts()];
@@ -239,8 +219,7 @@ impl Reference {
     #[inline(always)]
     fn momentum_difference<const FUSED: bool, const K: usize>(&self, x: &Rotated) -> Compensated<f64> {
         let (i, j) = ((K + 1) % 3, (K + 2) % 3);
-        let mut cross = Compensated::new(0.0);
-        cross.add_product_by::<FUSED>(x.v[i], x.m[j]);
+        let mut cross = Compensated::of_product::<FUSED>(x.v[i], x.m[j]);
         cross.add_product_by::<FUSED>(-x.v[j], x.m[i]);
         let mut l = Compensated::minus([self.momentum_space[0][K], self.momentum_space[1][K]]);
         l.add_scaled_by::<FUSED>(x.diagonal, [x.m[K], 0.0]);
@@ -263,19 +242,31 @@ impl Rotated {
     #[inline(always)]
     fn new<const FUSED: bool>(q: Quat<f64>, m: Vec3<f64>) -> Self {
         let (w, v) = (q.w, q.v);
-        let (mut diagonal, mut along) = (Compensated::new(0.0), Compensated::new(0.0));
-        diagonal.add_square::<FUSED>(w);
+        let mut diagonal = Compensated::of_product::<FUSED>(w, w);
         diagonal.add_product_by::<FUSED>(-v[0], v[0]);
         diagonal.add_product_by::<FUSED>(-v[1], v[1]);
         diagonal.add_product_by::<FUSED>(-v[2], v[2]);
-        along.add_product_by::<FUSED>(v[0], m[0]);
+        let mut along = Compensated::of_product::<FUSED>(v[0], m[0]);
         along.add_product_by::<FUSED>(v[1], m[1]);
         along.add_product_by::<FUSED>(v[2], m[2]);
         Rotated { w, v, m, diagonal, along }
     }
 }
 
+// A sum that begins with a product takes it as it is: added to zero it would take eight operations, and have the same bits.
 impl Compensated<f64> {
+    #[inline(always)]
+    fn of_product<const FUSED: bool>(a: f64, b: f64) -> Self {
+        let (term, rest) = product::<FUSED>(a, b);
+        Compensated::of([term, rest])
+    }
+
+    #[inline(always)]
+    fn of_product_of_parts<const FUSED: bool>(a: [f64; 2], b: [f64; 2]) -> Self {
+        let (term, rest) = product_of_parts::<FUSED>(a, b);
+        Compensated::of([term, rest])
+    }
+
     #[inline(always)]
     fn add_product_by<const FUSED: bool>(&mut self, a: f64, b: f64) {
         let (term, rest) = product::<FUSED>(a, b);
@@ -295,16 +286,16 @@ impl Compensated<f64> {
 
     /// Adds the product of two numbers in two parts.
     #[inline(always)]
-    fn add_product_of_parts<const FUSED: bool>(&mut self, [sum, carry]: [f64; 2], [high, low]: [f64; 2]) {
-        let (term, rest) = product::<FUSED>(sum, high);
-        self.add_parts(term, rest + (carry * high + sum * low));
+    fn add_product_of_parts<const FUSED: bool>(&mut self, a: [f64; 2], b: [f64; 2]) {
+        let (term, rest) = product_of_parts::<FUSED>(a, b);
+        self.add_parts(term, rest);
     }
 
     /// Adds the product of three.
     #[inline(always)]
     fn add_product_of_three<const FUSED: bool>(&mut self, a: [f64; 2], b: [f64; 2], c: [f64; 2]) {
-        let (term, rest) = product::<FUSED>(a[0], b[0]);
-        self.add_product_of_parts::<FUSED>([term, rest + (a[0] * b[1] + a[1] * b[0])], c);
+        let (term, rest) = product_of_parts::<FUSED>(a, b);
+        self.add_product_of_parts::<FUSED>([term, rest], c);
     }
 }
 
@@ -323,33 +314,39 @@ fn product<const FUSED: bool>(a: f64, b: f64) -> (f64, f64) {
     }
 }
 
+#[inline(always)]
+fn product_of_parts<const FUSED: bool>(a: [f64; 2], b: [f64; 2]) -> (f64, f64) {
+    let (term, rest) = product::<FUSED>(a[0], b[0]);
+    (term, rest + (a[1] * b[0] + a[0] * b[1]))
+}
+
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn free(reference: &Reference, lanes: &Lanes) -> [Lane; 3] {
     if target_cfg_f!(target_feature = "fma") && reference.ordinary {
-        all(|n| reference.free_differences::<true>(lanes.attitude(n), lanes.momentum(n)))
+        all(reference, |n| reference.free_differences::<true>(lanes.attitude(n), lanes.momentum(n)))
     } else {
-        all(|n| reference.free_differences::<false>(lanes.attitude(n), lanes.momentum(n)))
+        all(reference, |n| reference.free_differences::<false>(lanes.attitude(n), lanes.momentum(n)))
     }
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn heavy(reference: &Reference, lanes: &Lanes) -> [Lane; 2] {
     if target_cfg_f!(target_feature = "fma") && reference.ordinary {
-        all(|n| reference.heavy_differences::<true>(lanes.attitude(n), lanes.momentum(n)))
+        all(reference, |n| reference.heavy_differences::<true>(lanes.attitude(n), lanes.momentum(n)))
     } else {
-        all(|n| reference.heavy_differences::<false>(lanes.attitude(n), lanes.momentum(n)))
+        all(reference, |n| reference.heavy_differences::<false>(lanes.attitude(n), lanes.momentum(n)))
     }
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn circular(reference: &Reference, circle: &Circle, directions: &[Angles; 2], lanes: &Lanes) -> [Lane; 1] {
     if target_cfg_f!(target_feature = "fma") && reference.ordinary {
-        all(|n| {
+        all(reference, |n| {
             let (q, m) = (lanes.attitude(n), lanes.momentum(n));
             reference.circular_differences::<true>(circle, directions, n, q, m)
         })
     } else {
-        all(|n| {
+        all(reference, |n| {
             let (q, m) = (lanes.attitude(n), lanes.momentum(n));
             reference.circular_differences::<false>(circle, directions, n, q, m)
         })
@@ -358,12 +355,14 @@ fn circular(reference: &Reference, circle: &Circle, directions: &[Angles; 2], la
 
 #[inline(always)]
 #[expect(clippy::needless_range_loop, reason = "each lane has the same index")]
-fn all<const N: usize>(differences: impl Fn(usize) -> [f64; N]) -> [Lane; N] {
+fn all<const N: usize>(reference: &Reference, differences: impl Fn(usize) -> [f64; N]) -> [Lane; N] {
+    let nothing = if reference.ordinary { NOTHING } else { 0.0 };
     let mut lanes = [[0.0; BLOCK]; N];
     for n in 0..BLOCK {
         let of_point = differences(n);
         for k in 0..N {
-            lanes[k][n] = of_point[k];
+            // a NaN stays
+            lanes[k][n] = if of_point[k] < nothing { 0.0 } else { of_point[k] };
         }
     }
     lanes

@@ -59,7 +59,7 @@ impl Monitor {
         let start = x.to_dd();
         let forced = Forced::of(body, at, &start, rotor.kinetic_energy(start.momentum_body));
         let mut flips = Flips::new(rotor.middle_axis());
-        flips.observe(x.momentum_body);
+        flips.observe(&x.momentum_body);
         let start = Invariants::of(body, at, x);
         let rate = forced.and_then(|forced| forced.jacobi.filter(|_| forced.jacobi_scale > 0.0));
         let circle = body.circular_gradient().zip(rate);
@@ -96,19 +96,19 @@ impl Monitor {
     fn observe_block(&mut self, points: &[Point<f64>]) -> usize {
         let finite = match (&self.forced, &mut self.circle) {
             (None, _) => {
-                let (found, finite) = largest(self.reference.free(points), points.len());
+                let (found, finite) = largest(&self.reference.free(points), points.len());
                 self.worst = self.worst.max(self.errors_of(found));
                 finite
             }
             (Some(forced), _) if forced.linear_alone => {
-                let ([energy, momentum_z], finite) = largest(self.reference.heavy(points), points.len());
+                let ([energy, momentum_z], finite) = largest(&self.reference.heavy(points), points.len());
                 let (energy, momentum_z) = (energy / forced.energy_scale, momentum_z / forced.momentum_scale);
                 let found = Errors { energy: Some(energy), momentum_z: Some(momentum_z), ..Errors::NONE };
                 self.worst = self.worst.max(found);
                 finite
             }
             (Some(forced), Some(circle)) => {
-                let ([change], finite) = largest(self.reference.circular(circle, points), points.len());
+                let ([change], finite) = largest(&self.reference.circular(circle, points), points.len());
                 let jacobi = Some(change / forced.jacobi_scale);
                 self.worst = self.worst.max(Errors { jacobi, ..self.worst });
                 finite
@@ -116,7 +116,7 @@ impl Monitor {
             _ => return self.observe_forced(points),
         };
         for x in &points[..finite] {
-            self.flips.observe(x.momentum_body);
+            self.flips.observe(&x.momentum_body);
         }
         finite
     }
@@ -131,7 +131,7 @@ impl Monitor {
                 return n;
             }
             self.worst = self.worst.max(now);
-            self.flips.observe(x.momentum_body);
+            self.flips.observe(&x.momentum_body);
         }
         points.len()
     }
@@ -259,7 +259,20 @@ impl Monitor {
 
 /// The largest of each difference over those of the first `n` points that come before one that is not finite, and their
 /// number.
-fn largest<const N: usize>(differences: [Lane; N], n: usize) -> ([f64; N], usize) {
-    let finite = (0..n).take_while(|&n| differences.iter().all(|lane| lane[n].is_finite())).count();
-    (differences.map(|lane| lane[..finite].iter().fold(0.0, |worst: f64, &d| worst.max(d))), finite)
+fn largest<const N: usize>(differences: &[Lane; N], n: usize) -> ([f64; N], usize) {
+    // no branch as long as all are
+    let is_finite = |n: usize| differences.iter().fold(true, |all, lane| all & lane[n].is_finite());
+    let all_are = (0..BLOCK).fold(true, |all, n| all & is_finite(n));
+    let finite = if all_are { n } else { (0..n).take_while(|n| is_finite(*n)).count() };
+    let worst = core::array::from_fn(|k| {
+        // several at once: one after the other each would wait for the one before
+        let mut worst = [0.0_f64; 8];
+        for numbers in differences[k][..finite].chunks(worst.len()) {
+            for (worst, d) in worst.iter_mut().zip(numbers) {
+                *worst = if *d > *worst { *d } else { *worst };
+            }
+        }
+        worst.into_iter().fold(0.0, f64::max)
+    });
+    (worst, finite)
 }

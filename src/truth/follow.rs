@@ -148,7 +148,7 @@ impl Follower {
         let clock = Clock { start: self.start_time + from, step: span / count };
         let (mut step, fine) = self.prepared(clock, steps)?;
         let mut flips = Flips::new(self.body.rotor().middle_axis());
-        flips.observe(x.momentum_body.map(Dd::hi));
+        flips.observe(&x.momentum_body.map(Dd::hi));
         let mut moved = Point::new(x.attitude, x.momentum_body);
         step.open(&mut moved);
         for n in 1..=count as u64 {
@@ -162,7 +162,7 @@ impl Follower {
                     *x = moved;
                 }
             }
-            flips.observe(x.momentum_body.map(Dd::hi));
+            flips.observe(&x.momentum_body.map(Dd::hi));
             // a body that spins up takes more of them than its start lets expect
             let accepted = *taken + step.work().map_or(0, |work| work.accepted);
             if accepted > MOST_STEPS {
