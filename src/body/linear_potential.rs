@@ -14,8 +14,9 @@ use crate::rotation::{Quat, Vec3};
 #[inline]
 pub fn vertical<S: Real>(attitude: Quat<S>) -> Vec3<S> {
     let (w, Vec3([x, y, z])) = (attitude.w, attitude.v);
-    let two = S::of(2.0);
-    Vec3([two * (x * z - w * y), two * (y * z + w * x), (w * w + z * z) - (x * x + y * y)])
+    // twice the numbers and not the sums, which are waited for: the bits are the same
+    let (twice_w, twice_z) = (w + w, z + z);
+    Vec3([x * twice_z - twice_w * y, y * twice_z + twice_w * x, (w * w + z * z) - (x * x + y * y)])
 }
 
 /// A potential U = c·Γ that is linear in the vertical Γ = Qᵀ e_z, with a constant moment c in body axes.
