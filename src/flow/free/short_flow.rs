@@ -79,22 +79,30 @@ impl<S: Precise> ShortFlow<S> {
         m[0] = two_rounds(x.momentum_body.0);
         q[0] = x.attitude.components();
         turn[0] = spin(x.momentum_body);
+        // beside the arrays: what has just been written there is waited for when it is read in other pairs
+        let mut newest = (m[0], q[0], turn[0]);
         let mut least = [0.0; 2];
         let mut last = 0;
         for n in 0..N - 1 {
             let (mut products, mut attitude) = ([zero; 3], [zero; 4]);
-            for k in 0..=n {
-                let (u, v) = (&m[k], &m[n - k]);
+            let mut add = |u: [S; 5], q: [S; 4], v: [S; 5], turn: [S; 3]| {
                 products = from_fn(|i| products[i] + u[i + 1] * v[i + 2]);
-                let half = half_turn(q[k], turn[n - k]);
+                let half = half_turn(q, turn);
                 attitude = from_fn(|i| attitude[i] + half[i]);
+            };
+            let (newest_m, newest_q, newest_turn) = newest;
+            add(m[0], q[0], newest_m, newest_turn);
+            for k in 1..n {
+                add(m[k], q[k], m[n - k], turn[n - k]);
+            }
+            if n > 0 {
+                add(newest_m, newest_q, m[0], turn[0]);
             }
             let factor = t * self.reciprocals[n + 1];
             last = n + 1;
             let momentum = self.gyroscopic.times(Vec3(products)) * factor;
-            m[last] = two_rounds(momentum.0);
-            turn[last] = spin(momentum);
-            q[last] = attitude.map(|c| c * factor);
+            newest = (two_rounds(momentum.0), attitude.map(|c| c * factor), spin(momentum));
+            (m[last], q[last], turn[last]) = newest;
             if last == 1 {
                 let sizes = [momentum.magnitude(), Quat::from_components(q[last]).magnitude()];
                 least = sizes.map(|size| 0.25 * S::ROUNDOFF * size);
