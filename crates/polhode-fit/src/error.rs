@@ -555,8 +555,33 @@ mod tests {
 
     #[test]
     fn shares_are_printed_to_two_digits() {
-        let shares = [0.5, 0.123, 0.0456, 0.000_789, 1.2e-5, 9e-6];
-        let texts = ["50 %", "12 %", "4.6 %", "0.079 %", "0.0012 %", "less than 0.001 %"];
-        assert_eq!(shares.map(per_cent), texts);
+        for (share, text) in [
+            (0.5, "50 %"),
+            (0.123, "12 %"),
+            (0.1, "10 %"),
+            (0.0456, "4.6 %"),
+            (0.0104, "1.0 %"),
+            (0.01, "1.0 %"),
+            (0.000_789, "0.079 %"),
+            (1.2e-5, "0.0012 %"),
+            (1e-5, "0.001 %"),
+            (9e-6, "less than 0.001 %"),
+        ] {
+            assert_eq!(per_cent(share), text);
+        }
+    }
+
+    /// A value and its deviation have two digits of that, of none two behind the point, and never more than fifteen.
+    #[test]
+    fn values_have_the_digits_of_their_deviations() {
+        for (value, sigma, text) in [
+            (1234.0, 25.0, "1234 +- 25"),
+            (1.0345, 0.002, "1.0345 +- 0.0020"),
+            (1.5, 0.25, "1.50 +- 0.25"),
+            (1.5, 0.0, "1.50 +- 0.00"),
+            (2.0, 3e-20, "2.000000000000000 +- 0.000000000000000"),
+        ] {
+            assert_eq!(with_sigma(value, sigma), text);
+        }
     }
 }

@@ -80,6 +80,22 @@ fn refusals_say_their_numbers() {
     assert!(!FitError::Untold { names: vec!["drag"], rank: 5 }.to_string().contains("of 5"));
 }
 
+/// A fact is said from its bound on, and a torque or a noise of none is no fact.
+#[test]
+fn refusals_say_what_is_beyond_their_bounds() {
+    let driven = |unexplained, growth, pull| FitError::Driven { unexplained, growth, pull }.to_string();
+    says(driven(Some(0.01), 0.5, 1.2), &["leaves 1.0 % of", "grows by 50.00 per cent", "by 1.2 standard"]);
+    for growth in [0.0, f64::INFINITY, f64::NAN] {
+        let quiet = driven(None, growth, 1.0);
+        assert!(!quiet.contains("leaves") && !quiet.contains("grows") && !quiet.contains("moves"), "{quiet}");
+    }
+    let at_most = FitError::NoFlight { share: 0.75, torque: Some(0.02), most: 0.02 };
+    says(at_most, &["no stretch of free rotation is long enough"]);
+    // three times the noise of a component
+    says(FitError::NoRotation { rms: 0.1, noise: 0.1 }, &["at 3.0e-1 rad/s or faster"]);
+    assert!(FitError::NoRotation { rms: 0.0, noise: 0.0 }.to_string().ends_with("spin the body"));
+}
+
 /// What a record leaves open is said with the axes that it tells, and which record would tell more.
 #[test]
 fn what_is_open_is_said_in_words() {

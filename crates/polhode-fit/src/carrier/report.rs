@@ -160,5 +160,9 @@ mod tests {
             let expected = Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 5.0));
             assert!((along - expected).amax() < 1e-13, "{moments:?}: {along}");
         }
+        // y, x and z are left-handed: the first of them turns
+        let axes = frame(&Matrix3::from_diagonal(&Vector3::new(2.0, 1.0, 5.0))).to_rotation_matrix();
+        let expected = Matrix3::new(0.0, 1.0, 0.0, -1.0, 0.0, 0.0, 0.0, 0.0, 1.0);
+        assert!((axes.matrix() - expected).amax() < 1e-15, "{axes}");
     }
 }

@@ -92,6 +92,10 @@ mod tests {
         // a trace of 6 between 5 · 1.1875 and 5 · 1.25
         assert_eq!(light(&object(1.25)), Some(CarrierWarning::LightObject { trace: 6.0, sigma: 1.25 }));
         assert_eq!(light(&object(1.1875)), None);
+        assert_eq!(
+            [1.25, 0.5, 0.0].map(|sigma| object(sigma).trace()),
+            [(6.0, 1.25), (6.0, 0.5), (6.0, 0.0)]
+        );
     }
 
     #[test]

@@ -142,6 +142,20 @@ mod tests {
         }
     }
 
+    /// Steps of a walk last half a radian at least, and are no more than what is asked for; together they vary as the whole walk does.
+    #[test]
+    fn steps_of_a_walk_share_its_variance() {
+        for (duration, most, steps) in [(8.0, 4, 4), (8.0, 100, 16), (1.75, 100, 3), (0.25, 100, 1)] {
+            let stretch = Stretch::new(vec![1.0, 1.0 + duration], vec![Vector3::zeros(); 2]);
+            let columns = walk_columns(&[stretch], 3.0, most);
+            assert_eq!(columns.len(), 3 * steps, "{duration} {most}");
+            let squares = columns.iter().filter_map(|column| column.prior).map(|sigma| sigma * sigma);
+            // of each axis 3² times the duration
+            let expected = 27.0 * duration;
+            assert!((squares.sum::<f64>() / expected - 1.0).abs() < 1e-14, "{duration} {most}");
+        }
+    }
+
     /// A value of the fit goes to SI with the power of the unit rate that its unit has.
     #[test]
     fn units_of_columns_tell_their_power_of_the_rate() {

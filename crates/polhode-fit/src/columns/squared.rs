@@ -106,3 +106,31 @@ fn add(
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Matrix3;
+
+    /// The halves of a long stretch together are all of it, sample by sample.
+    #[test]
+    fn a_long_stretch_is_the_sum_of_its_halves() {
+        let count = LONG + 1;
+        let times: Vec<f64> = (0..count).map(|k| k as f64 / 1024.0).collect();
+        let rates = (0..count).map(|k| Vector3::new(0.5, (k % 7) as f64, -0.25)).collect();
+        let (stretch, noise) = (Stretch::new(times, rates), vec![Vector3::new(0.0, 0.0, 0.25); count]);
+        let tests = TestFunctions::new(&stretch, 16.0).unwrap();
+        let found = motion(&stretch, &noise, &Terms::at(Matrix3::identity()), &tests);
+        let mut expected = vec![Vector3::<f64>::zeros(); tests.count];
+        for (i, t) in stretch.times.iter().enumerate() {
+            let w = stretch.rates[i] - noise[i];
+            for (m, _, by) in Seen::new(&tests, *t).each() {
+                expected[m] += w * (w.norm() * by * stretch.weights[i]);
+            }
+        }
+        assert_eq!(found.len(), expected.len());
+        for (found, expected) in found.iter().zip(&expected) {
+            assert!((found - expected).amax() < 1e-9 * expected.amax(), "{found} {expected}");
+        }
+    }
+}

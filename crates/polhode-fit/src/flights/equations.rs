@@ -93,8 +93,8 @@ impl Test {
 /// The tests of a stretch; none where it is too short.
 pub(super) fn tests(stretch: &Stretch, radius: f64) -> Vec<Test> {
     let Some(functions) = TestFunctions::new(stretch, radius) else { return Vec::new() };
-    let none = Test {
-        centre: 0.0,
+    let none = |centre| Test {
+        centre,
         slope: Vector3::zeros(),
         value: Vector3::zeros(),
         square: [0.0; 6],
@@ -102,8 +102,7 @@ pub(super) fn tests(stretch: &Stretch, radius: f64) -> Vec<Test> {
         input: Vector3::zeros(),
         noise: 0.0,
     };
-    let mut tests: Vec<Test> =
-        functions.centres().into_iter().map(|centre| Test { centre, ..none }).collect();
+    let mut tests: Vec<Test> = functions.centres().into_iter().map(none).collect();
     for (i, ((&t, w), &weight)) in stretch.times.iter().zip(&stretch.rates).zip(&stretch.weights).enumerate()
     {
         let products = ENTRIES.map(|(a, b)| w[a] * w[b]);

@@ -19,9 +19,7 @@ use crate::thresholds::poses::FEWEST;
 pub(crate) fn beyond(stretches: &[Stretch], x: Coordinates, variance: f64) -> Form {
     let samples: usize = stretches.iter().map(|s| s.times.len()).sum();
     let duration: f64 = stretches.iter().map(Stretch::duration).sum();
-    // of so many neighbours the mean that the body hardly turns among them, and enough means are left
-    let within = (ALIKE * samples as f64 / duration).max(1.0);
-    let together = ((samples / MEANS).max(1)).min(within as usize);
+    let together = together(samples, duration);
     let tracks: Vec<Track> =
         stretches.iter().map(|s| means(s, together)).filter(|track| track.times.len() >= FEWEST).collect();
     if tracks.iter().map(|track| track.times.len()).sum::<usize>() > MOST {
@@ -40,6 +38,12 @@ pub(crate) fn beyond(stretches: &[Stretch], x: Coordinates, variance: f64) -> Fo
     // it goes on along the path: so far at least
     let apart = from - x;
     apart * apart.transpose()
+}
+
+/// Of so many neighbours the mean that the body hardly turns among them, and enough means are left.
+fn together(samples: usize, duration: f64) -> usize {
+    let within = (ALIKE * samples as f64 / duration).max(1.0);
+    ((samples / MEANS).max(1)).min(within as usize)
 }
 
 /// Means of as many neighbours each, about the middle of a stretch.
@@ -71,6 +75,31 @@ mod tests {
         assert!((found.times[0] + 3.0).abs() < 1e-15 && (found.times[1] - 2.0 / 3.0).abs() < 1e-15);
         assert_eq!(found.rates, [Vector3::new(1.0, 1.0, 0.0), Vector3::new(4.0, 1.0, 0.0)]);
         assert!(found.times.len() == 2 && found.used == [true; 2] && found.attitudes.is_empty());
+    }
+
+    /// A quarter of a radian is told by 8, 10, 2, none or 25 neighbours; the means are 200 at least, where there are as many samples.
+    #[test]
+    fn means_are_of_neighbours_that_are_alike() {
+        for (samples, duration, count) in
+            [(1000, 30.0, 5), (1600, 40.0, 8), (1000, 100.0, 2), (1000, 1000.0, 1), (100, 1.0, 1)]
+        {
+            assert_eq!(together(samples, duration), count, "{samples} {duration}");
+        }
+    }
+
+    /// Eight means tell how far off an estimate is, seven do not.
+    #[test]
+    fn eight_means_are_enough() {
+        let j = Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45);
+        let times: Vec<f64> = (0..8).map(|k| 0.75 * f64::from(k)).collect();
+        let (body, start) = (Inertia::from_tensor(j).unwrap(), Vector3::new(0.5, 0.8, -0.4));
+        let rates = simulate(&body, start, &times, 1e-6, &mut Random::new(2)).unwrap();
+        let off = Coordinates::new(0.01, -0.005, 0.0, 0.008, 0.0);
+        let eight = Stretch::new(times, rates);
+        let of = |stretch: Stretch| beyond(&[stretch], coordinates(&j) + off, 1e-12);
+        let expected = off * off.transpose();
+        assert!((of(eight.clone()) - expected).amax() < 0.1 * expected.amax());
+        assert_eq!(of(eight.head(7)), Form::zeros());
     }
 
     /// By as much as the likeliest tensor is off the estimate the ellipsoid is too small; of more means than a search takes nothing is said.

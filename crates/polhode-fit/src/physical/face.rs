@@ -4,7 +4,7 @@ use crate::thresholds::program::{INWARDS, NEAR, NEWTON, ROUNDED};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use crate::physical::certificate::Certificate;
-use crate::physical::constraint::ActiveConstraint;
+use crate::physical::constraint::{ActiveConstraint, Constraint};
 use crate::physical::coordinates::{Coordinates, eigen};
 use crate::physical::failure::SolverFailure;
 use crate::physical::law::LARGEST_SHARE;
@@ -39,7 +39,8 @@ impl Program {
                     let v = axes.column(k).into_owned();
                     (wall.most - values[k]) / self.reading(wall, &v, &v).g.norm()
                 };
-                (0..3).filter(|&k| distance(k) <= near).count().min(wall.rank)
+                // no body has three such moments
+                (0..3).filter(|&k| distance(k) <= near).count().min(2)
             })
             .collect();
         let mut held: Vec<usize> = (0..self.rows.len())
@@ -212,11 +213,9 @@ impl Program {
             return Err(SolverFailure::NotOptimal(certificate));
         }
         let mut active = Vec::new();
-        for ((wall, &face), z) in self.walls.iter().zip(faces).zip(&newton.zs) {
-            if face > 0 {
-                let constraint = wall.says[(face - 1).min(1)];
-                active.push(ActiveConstraint { constraint, multiplier: z.trace() / wall.unit });
-            }
+        for (&face, z) in faces.iter().zip(&newton.zs).filter(|(face, _)| **face > 0) {
+            let constraint = if face == 1 { Constraint::Triangle } else { Constraint::Rod };
+            active.push(ActiveConstraint { constraint, multiplier: z.trace() });
         }
         for (&k, &multiplier) in held.iter().zip(&newton.held) {
             let (_, constraint, unit) = self.rows[k];
@@ -265,7 +264,6 @@ impl Newton {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physical::constraint::Constraint;
     use crate::physical::coordinates::coordinates;
     use crate::physical::program::Row;
 

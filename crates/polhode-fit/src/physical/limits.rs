@@ -160,6 +160,16 @@ mod tests {
         assert!((gap - 0.05).abs() < 1e-6, "{gap}");
         let sides = [side(0, &apart[0], false), side(1, &apart[1], true)];
         assert!(first != second && sides.contains(&first) && sides.contains(&second), "{first} {second}");
+        // another limit, wherever it is given, has no part in it
+        let idle = Limit { axis: Vector3::z(), at_least: Some(0.1), at_most: Some(0.45) };
+        for (place, [low, high]) in [[1, 2], [0, 2], [0, 1]].into_iter().enumerate() {
+            let mut three = apart.to_vec();
+            three.insert(place, idle);
+            let Clash { first, second, gap } = of(&three);
+            let sides = [side(low, &three[low], false), side(high, &three[high], true)];
+            assert!((gap - 0.05).abs() < 1e-6 && first != second, "{place}: {gap}");
+            assert!(sides.contains(&first) && sides.contains(&second), "{place}: {first} {second}");
+        }
         let about_y = Limit { axis: Vector3::y(), at_least: None, at_most: Some(0.2) };
         assert!((of(&[about_x(None, Some(0.2)), about_y]).gap - 0.05).abs() < 1e-6);
         let alone = of(&[about_x(Some(0.6), None)]);

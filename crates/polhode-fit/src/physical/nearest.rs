@@ -287,6 +287,35 @@ mod tests {
         assert!(outside.contains("limit 1 is 5000"), "{outside}");
     }
 
+    /// Of two limits about one axis, whatever its sense, the tighter one holds the moment and is named; of two that are one the first.
+    #[test]
+    fn the_tighter_of_two_limits_is_named() {
+        let inside = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.35, 0.3, 0.35)));
+        let of = |sense: f64, at_least, at_most| Limit { axis: Vector3::x() * sense, at_least, at_most };
+        let most = |shares: [f64; 2]| [of(1.0, None, Some(shares[0])), of(-2.0, None, Some(shares[1]))];
+        let least = |shares: [f64; 2]| [of(1.0, Some(shares[0]), None), of(-2.0, Some(shares[1]), None)];
+        for (limits, named, share) in [
+            (most([0.3, 0.2]), 2, 0.2),
+            (most([0.2, 0.3]), 1, 0.2),
+            (most([0.2, 0.2]), 1, 0.2),
+            (least([0.38, 0.4]), 2, 0.4),
+            (least([0.4, 0.38]), 1, 0.4),
+            (least([0.4, 0.4]), 1, 0.4),
+        ] {
+            let answer = tensor_nearest(inside, Form::identity() * 100.0, &limits).unwrap();
+            let [active] = &answer.active[..] else { panic!("{:?}", answer.active) };
+            let (Constraint::AtMost { limit, .. } | Constraint::AtLeast { limit, .. }) = active.constraint
+            else {
+                panic!("{active:?}")
+            };
+            assert_eq!(limit, named, "{limits:?}");
+            assert!((tensor(&answer.x)[(0, 0)] - share).abs() < 1e-14, "{limits:?}");
+            // the gradient of a moment has the square 2/3
+            let multiplier = 1.5e4 * (share - 0.35).abs();
+            assert!((active.multiplier / multiplier - 1.0).abs() < 1e-6, "{active:?}");
+        }
+    }
+
     /// Random metrics, where nothing is known beforehand but the conditions of optimality.
     #[test]
     fn random_programs_with_drag_end_certified() {

@@ -234,6 +234,9 @@ mod tests {
         let error = Prior::new(tensor, negative).check().unwrap_err().to_string();
         assert!(error.contains("smallest eigenvalue is -1.000e-4"), "{error}");
         assert!(matches!(Prior::relative(-tensor, 0.01).check(), Err(FitError::Setting { .. })));
+        // what has no information either
+        let singular = Prior::relative(tensor, 0.0).told().err();
+        assert_eq!(singular, Some(FitError::PriorCovariance { least: 0.0, symmetric: true }));
     }
 
     /// A prior whose entries depend on each other.

@@ -29,12 +29,6 @@ pub(super) struct Wall {
     base: Matrix3<f64>,
     terms: Vec<(usize, Matrix3<f64>)>,
     pub(super) most: f64,
-    /// Most eigenvalues that may reach `most` at once.
-    pub(super) rank: usize,
-    /// Units of the matrix in one of the program.
-    pub(super) unit: f64,
-    /// What it says where one eigenvalue reaches `most`, and where several do.
-    pub(super) says: [Constraint; 2],
 }
 
 impl Wall {
@@ -44,9 +38,6 @@ impl Wall {
             base: Matrix3::identity() / 3.0,
             terms: (0..5).map(|k| (first + k, basis(k))).collect(),
             most: LARGEST_SHARE,
-            rank: 2,
-            unit: 1.0,
-            says: [Constraint::Triangle, Constraint::Rod],
         }
     }
 
@@ -58,9 +49,6 @@ impl Wall {
             base: less(*base),
             terms: (0..6).map(|k| (first + k, less(symmetric(k)))).collect(),
             most: 0.0,
-            rank: 2,
-            unit: 1.0,
-            says: [Constraint::Triangle, Constraint::Rod],
         }
     }
 
@@ -268,7 +256,6 @@ mod tests {
             }
             let expected = z.dot(&(here - start));
             assert!((program.push(&wall, &z).dot(&y) - expected).abs() < 1e-14);
-            assert_eq!((wall.rank, wall.unit), (2, 1.0));
         }
         // of a tensor T without its half trace: the entries from the first on, and what is added to them
         let own = program.unknowns(&y);
