@@ -80,6 +80,21 @@ fn a_motion_may_leave_a_twentieth_of_the_variation() {
     }
 }
 
+/// Of a steady spin nothing varies but the noise, of which five deviations of the sum of its squares may be left, and a twentieth of what
+/// is beyond: with 4500 components a ninth of them.
+#[test]
+fn a_steady_spin_may_leave_five_deviations_of_the_noise() {
+    let euler = Euler::new(Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45))).unwrap();
+    let times: Vec<f64> = (0..1500).map(|k| 0.02 * f64::from(k)).collect();
+    for (beyond, is_left) in [(0.09, true), (0.13, false)] {
+        // to and fro, so that no motion follows it
+        let size = 1e-2 * f64::sqrt(1.0 + beyond);
+        let off = |k: usize| Vector3::repeat(if k.is_multiple_of(2) { size } else { -size });
+        let s = Stretch::new(times.clone(), (0..1500).map(|k| Vector3::z() + off(k)).collect());
+        assert_eq!(nearest_motion(&euler, &s, 1e-4).is_some(), is_left, "{beyond}");
+    }
+}
+
 /// Dense samples within a step of the integrator count by their cubics as by themselves, before the start and after it.
 #[test]
 fn the_information_of_dense_samples_is_the_sum_over_them() {

@@ -6,6 +6,8 @@ use polhode::num::Random;
 use polhode::record::{Record, Segment};
 
 use crate::carrier::error::CarrierError;
+use crate::carrier::estimate::SizeSource;
+use crate::carrier::fit_carrier;
 use crate::carrier::law::{bodies, is_held, is_physical};
 use crate::carrier::least::least;
 use crate::carrier::proof::{ProofBody, parallel_axis};
@@ -42,6 +44,10 @@ fn told(tensor: Matrix3<f64>, settings: &Settings, seed: u64) -> Told {
 
 /// What its estimate was drawn from.
 fn drawn(tensor: Matrix3<f64>, settings: &Settings, seed: u64) -> Drawn {
+    fitted(&record(tensor, seed), settings).unwrap().drawn.unwrap()
+}
+
+fn record(tensor: Matrix3<f64>, seed: u64) -> Record {
     let times: Vec<f64> = (0..400).map(|k| 0.025 * f64::from(k)).collect();
     let wheel = Vector3::new(0.004, -0.002, 0.01);
     let acting = Disturbances::default().with_wheel(wheel).with_relative_drag(0.01);
@@ -51,7 +57,7 @@ fn drawn(tensor: Matrix3<f64>, settings: &Settings, seed: u64) -> Drawn {
     let mut record = Record::default();
     let momenta = vec![wheel; times.len()];
     record.segments.push(Segment::new("tumble", times, rates).unwrap().with_wheel(momenta).unwrap());
-    fitted(&record, settings).unwrap().drawn.unwrap()
+    record
 }
 
 /// By what an estimate may be off beside its noise, its record may be off among others.
@@ -340,4 +346,38 @@ fn what_no_attached_body_has_is_refused_by_name() {
     // two equal masses two apart: each is one from the centre
     let found = parallel_axis(1.0, Vector3::x() * 2.0, 1.0).unwrap();
     assert_eq!(found, Matrix3::from_diagonal(&Vector3::new(0.0, 2.0, 2.0)));
+}
+
+/// Of wheels and a proof body the surer one gives the size where the fit begins, and both are told.
+#[test]
+fn the_surer_size_begins() {
+    let body = ProofBody::adding(proof()).unwrap();
+    let trace = carrier().trace();
+    // the wheels tell a carrier that is larger by a hundredth, the proof body the right one to 2e-4
+    for (sure, expected) in [(1e5, 1.01 * trace), (1e2, trace)] {
+        let mut own = alone(Attached::Nothing, carrier(), None, Some(1.0 / 1.01), 1e5);
+        own.told.root[(0, 0)] = sure;
+        let with = alone(Attached::Proof, carrier() + proof(), Some(body), None, 1e5);
+        let found = start(&[own, with], false).unwrap();
+        assert!((found.carrier.trace() / expected - 1.0).abs() < 1e-9, "{sure}: {}", found.carrier);
+        let sources: Vec<SizeSource> = found.sizes.iter().map(|size| size.source).collect();
+        assert_eq!(sources, [SizeSource::Inputs, SizeSource::Proof]);
+        assert!((found.sizes[0].relative * sure / (1.01 * trace) - 1.0).abs() < 1e-12);
+    }
+}
+
+/// A record alone tells a carrier, whose size is as sure as what gives it, and no object beside it.
+#[test]
+fn one_record_tells_one_body() {
+    let settings = Settings::default().with_torque(TorqueModel::Drag);
+    let found = fit_carrier(&CarrierRecords::new(record(carrier(), 1)), &settings).unwrap();
+    let (trace, sigma) = found.carrier.trace();
+    assert!(found.pull == 0.0 && found.agreement.dof == 0 && found.sizes.len() == 1);
+    assert!((sigma / trace / found.sizes[0].relative - 1.0).abs() < 1e-6, "{sigma:e} {trace}");
+
+    let added = Matrix3::zeros();
+    let part = Part { told: told(carrier(), &settings, 1), has_object: true, added, uncertain: None };
+    let begin = Start { carrier: carrier(), object: Some(object()), wheel: None, sizes: Vec::new() };
+    let (system, z) = System::new(vec![part], Vec::new(), &begin);
+    assert!(z.len() == 12 && system.squares(&z).is_some() && system.linearised(&z).is_none());
 }

@@ -102,6 +102,22 @@ mod tests {
         assert!(align(&[Vector3::zeros(); 3].map(node), &rates).is_none());
     }
 
+    /// Both ends of half of the width belong to a mean; where no sample lies within them the next one counts, and behind the last that.
+    #[test]
+    fn rates_between_samples_are_those_of_the_next() {
+        let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let at = |time: f64, width: f64| {
+            let rate = Vector3::zeros();
+            let node = Node { time, attitude: Quat::identity(), rate, variance: 0.0 };
+            at_nodes(&[node], &[0.0, 1.0, 2.0], &[x, y, z], width)[0]
+        };
+        for (time, rate) in [(-1.0, x), (0.6, y), (0.9, y), (1.1, y), (1.5, z), (2.0, z), (5.0, z)] {
+            assert_eq!(at(time, 0.5), rate, "{time}");
+        }
+        assert_eq!((at(0.5, 2.0), at(1.0, 4.0)), ((x + y) * 0.5, (x + y + z) / 3.0));
+        assert_eq!(at(1.0, 3.75), y);
+    }
+
     /// Rates that leave a plane by little are their own mirror image up to a turn: a twentieth of the squares along the widest axis tells
     /// the two apart.
     #[test]

@@ -262,13 +262,33 @@ fn outwards(
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    fn gaining(gain: f64, count: usize) -> Found {
+impl Found {
+    /// So many coefficients that gain so much and move nothing.
+    pub(crate) fn gaining(gain: f64, count: usize) -> Found {
         let (moved, spread) = (DVector::zeros(COMMON), DMatrix::zeros(COMMON, count));
         Found { values: vec![0.0; count], moved, spread, sigmas: vec![1.0; count], gain }
     }
+}
+
+#[cfg(test)]
+impl Alternatives {
+    /// With the gains of an offset, a scale, drag, a constant torque, axes of rates that move.
+    pub(crate) fn gaining([offset, scale, drag, constant, moving]: [f64; 5]) -> Alternatives {
+        Alternatives {
+            drag: Some(Found::gaining(drag, 1)),
+            constant: Found::gaining(constant, 3),
+            moving: Some(MovingAxes { found: Found::gaining(moving, 3), is_of_rates: true }),
+            of_attitudes: None,
+            of_rates: Some(Found::gaining(moving, 3)),
+            offset: Some(Found::gaining(offset, 3)),
+            scale: Some(Found::gaining(scale, 1)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
 
     /// An error of the rates is named where it gains enough by itself and, less one for each of its numbers, more than the other error, a
     /// torque or axes that move.
@@ -290,18 +310,9 @@ mod tests {
             ([20.0, 0.0, 0.0, 0.0, 19.9], offset),
             ([20.0, 0.0, 0.0, 0.0, 20.1], None),
         ] {
-            let [of_offset, of_scale, drag, constant, moving] = gains;
-            let all = Alternatives {
-                drag: Some(gaining(drag, 1)),
-                constant: gaining(constant, 3),
-                moving: Some(MovingAxes { found: gaining(moving, 3), is_of_rates: true }),
-                of_attitudes: None,
-                of_rates: Some(gaining(moving, 3)),
-                offset: Some(gaining(of_offset, 3)),
-                scale: Some(gaining(of_scale, 1)),
-            };
+            let all = Alternatives::gaining(gains);
             assert_eq!(all.error_of_rates().map(|(error, _)| error), expected, "{gains:?}");
-            assert_eq!(all.of_error(RateError::Scale).map(|found| found.gain), Some(of_scale));
+            assert_eq!(all.of_error(RateError::Scale).map(|found| found.gain), Some(gains[1]));
             assert!(all.of_axes(true).is_some() && all.of_axes(false).is_none());
         }
     }

@@ -172,3 +172,108 @@ pub(crate) fn steady_within_noise(followed: &Followed) -> Option<Form> {
     let (_, least) = problem.sums(model)?;
     (cost - least <= SIGNIFICANT_GAIN).then(|| Reduced::new(&sums, None, 0.0)?.of_tensor()).flatten()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::likelihood::descent::Levels;
+    use crate::likelihood::track::Model;
+    use polhode::rotation::Quat;
+
+    /// A sphere that is followed for 4 at most to one side, with so much log-likelihood, and what drag and a constant torque of a size promise.
+    fn moved(likelihood: f64, promised: Option<[f64; 2]>, torque: f64) -> Moved {
+        let (x, alignment) = (Coordinates::zeros(), Quat::identity());
+        let track =
+            Track { times: vec![-4.0, 3.0], attitudes: Vec::new(), rates: Vec::new(), used: vec![false; 2] };
+        let followed = Followed {
+            model: Model { x, alignment, is_aligned: false, drag: None, starts: Vec::new() },
+            is_still: true,
+            tracks: vec![track],
+            // of one component
+            levels: Levels { attitude: 1.0, rate: libm::exp(-likelihood) },
+            dof: [0.0, 1.0],
+            deviation: 1.0,
+            beyond: Vec::new(),
+        };
+        let alternatives = promised.map(|[drag, constant]| {
+            let mut all = Alternatives::gaining([0.0, 0.0, drag, constant, 0.0]);
+            all.constant.values = vec![0.0, torque, 0.0];
+            all
+        });
+        Moved { followed, alternatives }
+    }
+
+    /// Sizes of a constant torque that turns the sphere by a little less and by a little more than what the first order holds.
+    const LITTLE: f64 = 0.099 / 24.0;
+    const FAR: f64 = 0.101 / 24.0;
+
+    /// Of drag and a constant torque the one is reckoned with that gains more beyond the 5 or 8 that are asked of it; a constant torque
+    /// that turns the body far only from 15 on.
+    #[test]
+    fn the_torque_that_gains_more_than_is_asked_is_chosen() {
+        use Acting::{Constant, Drag, Nothing};
+        // what both promise, what drag brings, the size of the constant torque
+        for (promised, slowed, torque, acting, gain) in [
+            ([4.9, 7.9], 100.0, LITTLE, Nothing, None),
+            ([5.0, 8.0], 100.0, LITTLE, Nothing, None),
+            ([5.1, 0.0], 5.1, LITTLE, Drag, Some(5.1)),
+            ([5.1, 0.0], 4.9, LITTLE, Nothing, None),
+            ([5.1, 8.1], 5.05, LITTLE, Constant, Some(8.1)),
+            ([5.1, 8.1], 5.2, LITTLE, Drag, Some(5.2)),
+            ([0.0, 8.1], 0.0, LITTLE, Constant, Some(8.1)),
+            ([5.1, 8.0], 0.0, LITTLE, Nothing, None),
+            ([0.0, 14.9], 0.0, FAR, Nothing, None),
+            ([0.0, 15.0], 0.0, FAR, Nothing, None),
+            ([0.0, 15.1], 0.0, FAR, Constant, Some(15.1)),
+        ] {
+            let of = |has_drag: bool| match has_drag {
+                true => Some(moved(slowed, None, 0.0)),
+                false => Some(moved(0.0, Some(promised), torque)),
+            };
+            let found = with_torque(TorqueModel::Auto, of).unwrap();
+            assert_eq!(found.torque, acting, "{promised:?} {slowed}");
+            let is_gain = found.gain.zip(gain).map(|(found, gain): (f64, f64)| (found - gain).abs() < 1e-12);
+            assert!(is_gain.unwrap_or(found.gain == gain), "{promised:?}: {:?}", found.gain);
+            assert_eq!(found.without.is_some(), gain.is_some(), "{promised:?}");
+            // the motion with drag is that of drag alone
+            assert_eq!(found.moved.alternatives.is_none(), acting == Drag, "{promised:?}");
+        }
+        // where nothing is promised drag is tried, and where there is no free motion nothing else is left
+        let open =
+            |slowed: f64| move |has_drag: bool| Some(moved(if has_drag { slowed } else { 0.0 }, None, 0.0));
+        assert_eq!([5.1, 4.9].map(|slowed| chosen(open(slowed)).unwrap().torque), [Drag, Nothing]);
+        let found = chosen(|has_drag| has_drag.then(|| moved(1.0, None, 0.0))).unwrap();
+        assert!(found.torque == Drag && found.gain.is_none());
+        assert!(chosen(|_| None).is_none());
+    }
+
+    /// A torque that is asked for is there, whatever it gains, and no other one.
+    #[test]
+    fn a_torque_that_is_asked_for_is_not_compared() {
+        let of = |has_drag: bool| Some(moved(if has_drag { 7.0 } else { 0.0 }, Some([100.0; 2]), LITTLE));
+        for (model, acting, likelihood) in [
+            (TorqueModel::None, Acting::Nothing, 0.0),
+            (TorqueModel::Constant, Acting::Constant, 0.0),
+            (TorqueModel::Drag, Acting::Drag, 7.0),
+        ] {
+            let found = with_torque(model, of).unwrap();
+            assert!(found.torque == acting && found.gain.is_none() && found.without.is_none());
+            assert!((found.moved.followed.cost() + 2.0 * likelihood).abs() < 1e-12, "{model}");
+        }
+    }
+
+    /// A torque τ turns a sphere, whose moments are a third, by 3 τ T²/2 within the longer side T of a stretch; it is told as left out from
+    /// a gain of 8 on.
+    #[test]
+    fn a_torque_turns_the_body_by_its_acceleration() {
+        let free = moved(0.0, None, 0.0).followed;
+        let torque = |gain: f64, size: f64| {
+            let values = vec![0.0, 0.0, -size];
+            alternatives::Found { values, ..alternatives::Found::gaining(gain, 3) }
+        };
+        let (gain, turn) = left_out(&free, &torque(8.1, 0.125)).unwrap();
+        assert!(gain == 8.1 && (turn / 3.0 - 1.0).abs() < 1e-14, "{turn}");
+        assert!(left_out(&free, &torque(8.0, 0.125)).is_none());
+        assert!(is_linear(&free, &torque(0.0, LITTLE)) && !is_linear(&free, &torque(0.0, FAR)));
+    }
+}

@@ -114,7 +114,7 @@ pub(crate) fn moved(model: &Model, step: &Step) -> Model {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::physical::coordinates::{Coordinates, Form};
+    use crate::physical::coordinates::{Coordinates, Form, eigen};
     use nalgebra::Vector3;
 
     /// Squares of residuals in their deviations up to four, beyond them 2 · 4 times the size less 16; a pull is added, and what is not used
@@ -148,5 +148,31 @@ mod tests {
         // 4 · 5 · 0.25
         assert!((cost(1.0, Some(pull)) - 46.0).abs() < 1e-9);
         assert_eq!((levels.of(Kind::Attitude), levels.of(Kind::Rate)), (0.02, 0.1));
+    }
+
+    /// The motion of the readings is a bottom at once. Where a pull outwards makes a saddle of it no step is taken but a damped one, and that
+    /// tells of no bottom.
+    #[test]
+    fn a_saddle_is_no_bottom() {
+        let start = Start { attitude: Quat::identity(), rate: Vector3::new(0.5, 0.8, -0.4) };
+        let x = Coordinates::new(-0.06, 0.02, 0.03, -0.02, 0.04);
+        let alignment = Quat::identity();
+        let model = Model { x, alignment, is_aligned: false, drag: None, starts: vec![start] };
+        let motion = model.motion(&start).unwrap();
+        let times: Vec<f64> = (0..=20).map(|k| 0.5 * f64::from(k) - 5.0).collect();
+        let rates = times.iter().map(|t| motion.at(*t).unwrap().rate).collect();
+        let tracks = [Track { attitudes: Vec::new(), rates, used: vec![true; 21], times }];
+        let levels = Levels { attitude: 1.0, rate: 0.1 };
+        let problem = |pull| Problem { tracks: &tracks, levels, radius: f64::INFINITY, pull };
+        let (sums, cost) = problem(None).sums(&model).unwrap();
+        let form = Reduced::new(&sums, None, 0.0).unwrap().of_tensor().unwrap();
+        assert!(cost == 0.0 && problem(None).settle(model.clone()).unwrap().is_still);
+        // along the direction of which the readings tell least the information is half of theirs, or as much below zero
+        for (share, is_still) in [(0.5, true), (2.0, false)] {
+            let information = Form::identity() * (-share * eigen(form).0[0]);
+            let pull = Pull { information, centre: x, drag: 0.0 };
+            let settled = problem(Some(pull)).settle(model.clone()).unwrap();
+            assert_eq!((settled.is_still, settled.model.x), (is_still, x), "{share}");
+        }
     }
 }

@@ -336,4 +336,14 @@ mod tests {
             assert_eq!((found.attitude, found.rate), (Quat::identity(), Vector3::z() * mean));
         }
     }
+
+    /// Of fewer readings than the model has numbers no noise is left to tell, and there is no answer: of six components for eight.
+    #[test]
+    fn fewer_readings_than_numbers_have_no_answer() {
+        let all = off_by([0.0; 5]);
+        let (times, rates) = (all.times[..2].to_vec(), all.rates[..2].to_vec());
+        let two = Track { times, rates, attitudes: Vec::new(), used: vec![true; 2] };
+        let levels = Levels { attitude: 0.0, rate: 1e-3 };
+        assert!(search(&[two], model(false, None).x, Quat::identity(), levels, false).is_none());
+    }
 }

@@ -79,9 +79,12 @@ fn moments(n: &Vector3<f64>) -> Vec<Vector3<f64>> {
 mod tests {
     use super::*;
     use crate::physical::coordinates::tensor;
+    use crate::thresholds::likelihood::SMALLEST;
     use nalgebra::UnitQuaternion;
     use polhode::flow::FreeMotion;
     use polhode::inertia::Inertia;
+    use polhode::num::Random;
+    use polhode::rotation::{Quat, Vec3};
 
     #[test]
     fn a_few_rates_far_apart_tell_the_tensor_and_its_mirror_image() {
@@ -128,6 +131,39 @@ mod tests {
         let (a, b) = (Vector3::new(0.3, -0.5, 0.7), Vector3::new(-0.2, 0.4, 0.9));
         assert!((features(&a).dot(&features(&b)) - a.dot(&b) * a.dot(&b)).abs() < 1e-15);
         assert!((symmetric(&features(&a)) - a * a.transpose()).amax() < 1e-15);
+    }
+
+    /// Of the forms (2, 2, −1)/3 and (−1, 2, 2)/3 each has two equal eigenvalues, and so has one of their sum and difference: the other tells
+    /// the axes. By n = (2, −1, 2) the middle moment is 2/3, and the outer ones (1 ± √3)/6, of which one is drawn inwards.
+    #[test]
+    fn one_of_four_mixtures_tells_the_axes() {
+        let (little, much) = (Vector3::new(-1.0, 2.0, 2.0) / 3.0, Vector3::new(2.0, -1.0, 2.0) / 3.0);
+        let mut rates: Vec<Vector3<f64>> = Vec::new();
+        for (a, b) in [(0.06, 0.6), (0.06, -0.6), (-0.06, 0.6), (-0.06, -0.6)] {
+            let squares = Vector3::repeat(1.0) + little * a + much * b;
+            for signs in [[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, -1.0]] {
+                rates.push(squares.map(f64::sqrt).component_mul(&Vector3::from(signs)));
+            }
+        }
+        let root = 3.0_f64.sqrt();
+        let moments = [(1.0 + root) / 6.0, 2.0 / 3.0, (1.0 - root) / 6.0];
+        let third = 1.0 / 3.0;
+        let share = (third - SMALLEST) / (third - moments[2]);
+        let [high, middle, low] = moments.map(|moment| third + (moment - third) * share);
+        let mut random = Random::new(3);
+        for trial in 0..8 {
+            let turn: UnitQuaternion<f64> = Quat::exponential(Vec3::from(random.normal_vector())).into();
+            let turn = *turn.to_rotation_matrix().matrix();
+            let turned: Vec<Vector3<f64>> = rates.iter().map(|w| turn * w).collect();
+            let found = tensors_of(&[&turned]);
+            let along: Vec<Matrix3<f64>> =
+                found.iter().map(|x| turn.transpose() * tensor(x) * turn).collect();
+            assert_eq!(along.len(), 2, "{trial}");
+            for ends in [[high, middle, low], [low, middle, high]] {
+                let expected = Matrix3::from_diagonal(&Vector3::from(ends));
+                assert!(along.iter().any(|own| (own - expected).amax() < 1e-9), "{trial}: {along:?}");
+            }
+        }
     }
 
     /// Stretches of one body have energies and momenta of their own.

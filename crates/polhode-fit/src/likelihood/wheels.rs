@@ -446,6 +446,10 @@ mod tests {
     use crate::columns::sets::sensor_columns;
     use crate::physical::coordinates::{Coordinates, Form, coordinates, trace_free};
     use crate::settings::sensor::SensorPriors;
+    use crate::signal::covariance::Levels;
+    use crate::signal::stretch::KnownInputs;
+    use crate::signal::test_functions::TestFunctions;
+    use crate::solve::linearised::Linearised;
     use polhode::num::Random;
 
     /// Against the equation of motion, also of moments that no body has.
@@ -575,6 +579,49 @@ mod tests {
             let (damped, _) = all.reduced(&[], &here, 0.5, is_pulled).unwrap();
             assert!((damped[(1, 1)] / information[(1, 1)] - 1.5).abs() < 1e-12);
             assert_eq!(damped[(1, 2)], information[(1, 2)]);
+        }
+    }
+
+    /// A stretch begins with the rate in its middle, at the reading less its noise. Wheels have the mean of their momenta where these change by
+    /// no more than 0.3 of the smallest moment in √(n/(white variance)) of 1.2 times them, and no torque is known.
+    #[test]
+    fn a_stretch_has_the_mean_of_its_wheels() {
+        let (weak, count) = (weak(), 33);
+        let least = eigen(tensor(&weak.at.x)).0[0];
+        let times: Vec<f64> = (0..33).map(|k| 1.0 + 0.25 * f64::from(k)).collect();
+        let rates: Vec<Vector3<f64>> = (0..33).map(|k| Vector3::new(0.1 * f64::from(k), 0.5, -0.4)).collect();
+        let mut noise = vec![Vector3::<f64>::zeros(); count];
+        noise[16] = Vector3::new(0.5, -0.1, 0.2);
+        let mean: Vector3<f64> = Vector3::new(0.05, 0.1, -0.02);
+        // √(33/(8.25 · 0.25)) = 4
+        let (white, variance) = (8.25, 0.25);
+        let plain = Stretch::new(times, rates);
+        let tests = TestFunctions::new(&plain, 1.0).unwrap();
+        let with = |change: f64, torque: f64| {
+            let (mut wheel, mut pushed) = (vec![mean; count], vec![Vector3::<f64>::zeros(); count]);
+            wheel[0].x += change;
+            wheel[32].x -= change;
+            pushed[7].z = torque;
+            Stretch { inputs: Some(KnownInputs { wheel, torque: pushed }), ..plain.clone() }
+        };
+        let part = |stretch: &Stretch| Part {
+            stretch: 0,
+            linearised: Linearised::new(stretch, &noise, &weak.columns, weak.at.clone(), tests.clone()),
+            rows: Vec::new(),
+            levels: Levels { white, ..Levels::WHITE },
+            log_determinant: 0.0,
+            noise: noise.clone(),
+        };
+        let limit = 0.3 * least / (1.2 * 4.0);
+        let steady = with(0.99 * limit, 0.0);
+        let found = Track::new(&steady, &part(&steady), &weak, variance).unwrap();
+        assert!((found.wheel - mean).amax() < 1e-15 && found.middle == 5.0 && found.weight == 1.0 / white);
+        // an error of scale of 0.015 and three offsets
+        let start = Vector3::new(1.6 - 0.5, 0.5 + 0.1, -0.4 - 0.2) * 1.015 - Vector3::new(0.01, -0.02, 0.03);
+        assert!((found.start - start).amax() < 1e-14, "{}", found.start);
+        assert_eq!(found.reach(), 4.0);
+        for other in [with(1.01 * limit, 0.0), with(0.0, 1e-9), plain.clone()] {
+            assert!(Track::new(&other, &part(&other), &weak, variance).is_none());
         }
     }
 
