@@ -177,7 +177,9 @@ pub(crate) fn steady_within_noise(followed: &Followed) -> Option<Form> {
 mod tests {
     use super::*;
     use crate::likelihood::descent::Levels;
-    use crate::likelihood::track::Model;
+    use crate::likelihood::motion::Start;
+    use crate::likelihood::track::{COMMON, Model};
+    use nalgebra::{DMatrix, DVector};
     use polhode::rotation::Quat;
 
     /// A sphere that is followed for 4 at most to one side, with so much log-likelihood, and what drag and a constant torque of a size promise.
@@ -190,7 +192,7 @@ mod tests {
             is_still: true,
             tracks: vec![track],
             // of one component
-            levels: Levels { attitude: 1.0, rate: libm::exp(-likelihood) },
+            levels: Levels { attitude: 0.0, rate: libm::exp(-likelihood) },
             dof: [0.0, 1.0],
             deviation: 1.0,
             beyond: Vec::new(),
@@ -275,5 +277,63 @@ mod tests {
         assert!(gain == 8.1 && (turn / 3.0 - 1.0).abs() < 1e-14, "{turn}");
         assert!(left_out(&free, &torque(8.0, 0.125)).is_none());
         assert!(is_linear(&free, &torque(0.0, LITTLE)) && !is_linear(&free, &torque(0.0, FAR)));
+    }
+
+    /// The motion of a tensor, by its own rates with this noise, and what drag and a constant torque of a size promise.
+    fn exact(x: Coordinates, noise: f64, torque: f64) -> Moved {
+        let mut all = moved(0.0, Some([6.0, 7.0]), torque);
+        let start = Start { attitude: Quat::identity(), rate: Vector3::new(0.5, 0.8, -0.4) };
+        all.followed.model = Model { x, starts: vec![start], ..all.followed.model };
+        let motion = all.followed.model.motion(&start).unwrap();
+        let times: Vec<f64> = (0..=20).map(|k| 0.4 * f64::from(k) - 4.0).collect();
+        let rates = times.iter().map(|t| motion.at(*t).unwrap().rate).collect();
+        all.followed.tracks = vec![Track { times, attitudes: Vec::new(), rates, used: vec![true; 21] }];
+        all.followed.levels.rate = noise;
+        all
+    }
+
+    /// To first order a torque moves the tensor and widens what is known of it; one that turns the body far is not weighed. Drag that was
+    /// followed stands with its own tensor: of half the noise one component gains log 2.
+    #[test]
+    fn torques_are_weighed_by_what_they_move_and_widen() {
+        let x = Coordinates::new(-0.06, 0.02, 0.03, -0.02, 0.04);
+        let by = |size: f64, count: usize| alternatives::Found {
+            moved: DVector::from_fn(COMMON, |k, _| size * (k + 1) as f64),
+            spread: DMatrix::from_fn(COMMON, count, |i, k| size * (1 + (2 * i + 3 * k) % 5) as f64),
+            ..alternatives::Found::gaining(1e3 * size, count)
+        };
+        let with = |torque: f64| {
+            let mut free = exact(x, 0.1, torque);
+            let all = free.alternatives.as_mut().unwrap();
+            all.drag = Some(by(6e-3, 1));
+            all.constant = alternatives::Found { values: vec![0.0, torque, 0.0], ..by(7e-3, 3) };
+            free
+        };
+        let free = with(0.1 * LITTLE);
+        let own = covariance(&free.followed).unwrap();
+        let alike = |one: &Weighed, model: TorqueModel, gain: f64, x: Coordinates, expected: Form| {
+            let found = one.factor * one.factor.transpose();
+            assert!(one.is_torque(model) && !one.has_noise && (one.gain - gain).abs() < 1e-12, "{one:?}");
+            assert!((one.x - x).amax() < 1e-15, "{one:?}");
+            assert!((found - expected).amax() < 1e-9 * expected.amax(), "{found} {expected}");
+        };
+        let first_order = |one: &Weighed, model: TorqueModel, size: f64, count: usize| {
+            let steps = Coordinates::from_fn(|k, _| size * (k + 1) as f64);
+            let spread = by(size, count).spread;
+            let wider = Form::from_fn(|i, k| (0..count).map(|e| spread[(i, e)] * spread[(k, e)]).sum());
+            alike(one, model, 1e3 * size, x + steps, own + wider);
+        };
+        let models = weighed(&free, None);
+        let [none, drag, constant] = &models[..] else { panic!("{models:?}") };
+        alike(none, TorqueModel::None, 0.0, x, own);
+        first_order(drag, TorqueModel::Drag, 6e-3, 1);
+        first_order(constant, TorqueModel::Constant, 7e-3, 3);
+
+        let other = Coordinates::new(0.01, -0.03, 0.0, 0.02, 0.0);
+        let slowed = exact(other, 0.05, 0.0);
+        let models = weighed(&with(10.0 * FAR), Some(&slowed));
+        let [_, drag] = &models[..] else { panic!("{models:?}") };
+        let of_slowed = covariance(&slowed.followed).unwrap();
+        alike(drag, TorqueModel::Drag, core::f64::consts::LN_2, other, of_slowed);
     }
 }

@@ -199,8 +199,12 @@ mod tests {
     use crate::columns::drag::Drag;
     use crate::columns::offset::Offset;
     use crate::columns::scale::Scale;
-    use crate::physical::coordinates::Coordinates;
-    use nalgebra::{DMatrix, DVector};
+    use crate::physical::coordinates::{Coordinates, Form, coordinates};
+    use crate::signal::covariance::Levels;
+    use crate::signal::test_functions::TestFunctions;
+    use crate::solve::linearised::Linearised;
+    use crate::solve::weak_estimate::Part;
+    use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
     use polhode::num::Random;
 
     const DEVIATION: f64 = 0.7;
@@ -221,6 +225,44 @@ mod tests {
             rows: (0..10 * rows).map(|_| random.normal()).collect(),
         });
         Equations { columns, errors: 1, torques: 2, origin, segments: segments.into(), deviation: DEVIATION }
+    }
+
+    /// The equations of an estimate have every torque between the errors and what all models have, each at its value in the estimate or zero.
+    #[test]
+    fn equations_stand_where_the_estimate_does() {
+        let times: Vec<f64> = (0..60).map(|k| 0.25 * f64::from(k)).collect();
+        let rates = times.iter().map(|t| Vector3::new(0.5 + 0.1 * t, 0.8 - 0.05 * t, 0.3)).collect();
+        let (stretch, noise) = (Stretch::new(times, rates), vec![Vector3::zeros(); 60]);
+        let (drag, scale) = (Column::new(Drag, None), Column::new(Scale, Some(0.2)));
+        let columns = vec![drag, scale];
+        let x = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45)));
+        let at = Unknowns { x, c: vec![0.05, 0.015] };
+        let tests = TestFunctions::new(&stretch, 1.5).unwrap();
+        let equations = 3 * tests.count;
+        let linearised = Linearised::new(&stretch, &noise, &columns, at.clone(), tests);
+        let (rows, levels) = (Vec::new(), Levels::WHITE);
+        let part = Part { stretch: 0, linearised, rows, levels, log_determinant: 0.0, noise };
+        let weak = WeakEstimate {
+            radius: 1.5,
+            columns,
+            at,
+            moved: 0.0,
+            root: Form::identity(),
+            stacked: None,
+            doubt: Form::zeros(),
+            squares: 0.0,
+            rows: equations,
+            parts: vec![part],
+        };
+        let offsets = [0, 1, 2].map(|k| Column::new(Offset(k), None));
+        let found = Equations::new(&[stretch], &weak, &offsets, &[scale], 0.25).unwrap();
+        // one of drag, one with the square of the rate, and three each of viscous drag and of a constant torque
+        assert_eq!((found.errors().len(), found.torques, found.columns.len()), (3, 8, 12));
+        assert!(found.columns[3].is_alike(&drag) && found.columns[11] == scale && found.deviation == 0.5);
+        let mut values = vec![0.0; 12];
+        (values[3], values[11]) = (0.05, 0.015);
+        assert_eq!(found.origin, Unknowns { x, c: values });
+        assert_eq!(found.segments.iter().map(|segment| segment.equations).collect::<Vec<_>>(), [equations]);
     }
 
     /// A model has the columns of its torque and those of every model; what it has not is zero, and its part is taken off the residuals.

@@ -316,6 +316,26 @@ mod tests {
         }
     }
 
+    /// Of a limit so narrow that both of its sides are near, the side towards the centre holds.
+    #[test]
+    fn the_side_towards_the_centre_holds_a_narrow_limit() {
+        let (low, high) = (0.3, 0.300_004);
+        let narrow = [Limit { axis: Vector3::x(), at_least: Some(low), at_most: Some(high) }];
+        for (moments, share) in [([0.2, 0.35, 0.45], low), ([0.4, 0.25, 0.35], high)] {
+            let centre = coordinates(&Matrix3::from_diagonal(&Vector3::from(moments)));
+            let answer = tensor_nearest(centre, Form::identity() * 100.0, &narrow).unwrap();
+            let [active] = &answer.active[..] else { panic!("{:?}", answer.active) };
+            let is_lower = matches!(active.constraint, Constraint::AtLeast { limit: 1, .. });
+            let is_upper = matches!(active.constraint, Constraint::AtMost { limit: 1, .. });
+            assert_eq!((is_lower, is_upper), (share == low, share == high));
+            assert!((tensor(&answer.x)[(0, 0)] - share).abs() < 1e-14, "{share}");
+            assert!(
+                (active.multiplier / (1.5e4 * (share - moments[0]).abs()) - 1.0).abs() < 1e-6,
+                "{active:?}"
+            );
+        }
+    }
+
     /// Random metrics, where nothing is known beforehand but the conditions of optimality.
     #[test]
     fn random_programs_with_drag_end_certified() {
