@@ -442,6 +442,7 @@ impl WeakEstimate {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::columns::drag::Drag;
     use crate::columns::input::Input;
     use crate::columns::sets::sensor_columns;
     use crate::physical::coordinates::{Coordinates, Form, coordinates, trace_free};
@@ -450,6 +451,7 @@ mod tests {
     use crate::signal::stretch::KnownInputs;
     use crate::signal::test_functions::TestFunctions;
     use crate::solve::linearised::Linearised;
+    use crate::solve::stacked::Stacked;
     use polhode::num::Random;
 
     /// Against the equation of motion, also of moments that no body has.
@@ -652,5 +654,75 @@ mod tests {
         let fastest = all.fastest(&all.tracks[0], &model(&weak));
         let expected: f64 = 1.2 * Vector3::new(0.05, 0.1, -0.02).norm() / eigen(tensor(&weak.at.x)).0[0];
         assert!((fastest / expected - 1.0).abs() < 1e-12);
+    }
+
+    /// The motion of the readings is a bottom at once, and a saddle, where only damped steps can be taken, is none.
+    #[test]
+    fn a_saddle_of_wheels_is_no_bottom() {
+        let mut weak = weak();
+        weak.at.c[1..].fill(0.0);
+        let exact = stretch(&weak, 0.0);
+        let (here, radius) = (model(&weak), 2.0);
+        let plain = problem(&weak, &exact);
+        let sums = plain.sums(&here, radius).unwrap();
+        let (information, _) = plain.reduced(&sums, &here, 0.0, false).unwrap();
+        let least = information.symmetric_eigenvalues().min();
+        for (share, is_still) in [(0.5, true), (1.01, false)] {
+            let pull = DMatrix::identity(10, 10) * (-share * least);
+            let outwards = Problem { pull, ..problem(&weak, &exact) };
+            let (found, still) = outwards.settle(here.clone(), radius, true).unwrap();
+            assert!(still == is_still && found.at == here.at, "{share}");
+        }
+    }
+
+    /// A weak estimate of a stretch with wheels, which leaves no residuals.
+    fn estimated(stretch: &Stretch, at: &Unknowns) -> WeakEstimate {
+        let base = weak();
+        let (tests, noise) = (TestFunctions::new(stretch, 1.0).unwrap(), vec![Vector3::<f64>::zeros(); 129]);
+        let linearised = Linearised::new(stretch, &noise, &base.columns, at.clone(), tests);
+        let stacked = Some(Stacked::new(&[linearised.rows.as_slice()], &base.columns, at, 2e-4));
+        let (rows, levels) = (Vec::new(), Levels::WHITE);
+        let part = Part { stretch: 0, linearised, rows, levels, log_determinant: 0.0, noise };
+        WeakEstimate { at: at.clone(), stacked, rows: 100, parts: vec![part], ..base }
+    }
+
+    /// Next to a weak estimate the motion leaves the noise but for thirteen numbers. There is none where torque noise, a drag or a column of one
+    /// stretch acts, where the weak equations or the motion leave more than noise, of another stretch, and far from the weak estimate.
+    #[test]
+    fn the_likeliest_unknowns_are_next_to_the_weak_ones() {
+        let base = weak();
+        let (free, noisy) = (stretch(&base, 0.0), stretch(&base, 1e-4));
+        let inputs = KnownInputs {
+            wheel: vec![Vector3::new(0.05, 0.1, -0.02); 129],
+            torque: vec![Vector3::zeros(); 129],
+        };
+        let all = [Stretch { inputs: Some(inputs), ..noisy }];
+        // twice the deviation of the noise
+        let variance = 4e-8;
+        // of 95 equations beyond the unknowns 1 + 5 √(2/95) = 1.73 is noise
+        let with = |misfit: f64| {
+            let squares = misfit * 95.0 * variance;
+            WeakEstimate { squares, ..estimated(&all[0], &base.at) }
+        };
+        let found = likeliest(&all, &with(1.7), variance).unwrap();
+        let squares: f64 = all[0].rates.iter().zip(&free.rates).map(|(a, b)| (a - b).norm_squared()).sum();
+        let share = found.misfit * variance * (3 * 129 - 13) as f64 / squares;
+        assert!((0.9..1.0).contains(&share), "{share}");
+        assert!((found.at.x - base.at.x).amax() < 1e-2, "{:?}", found.at);
+        assert_eq!(found.information.shape(), (10, 10));
+
+        let refused = |change: &dyn Fn(&mut WeakEstimate)| {
+            let mut weak = with(0.0);
+            change(&mut weak);
+            likeliest(&all, &weak, variance).is_none()
+        };
+        assert!(refused(&|weak| weak.parts[0].levels.torque = 0.1));
+        assert!(refused(&|weak| weak.parts[0].stretch = 1));
+        assert!(refused(&|weak| weak.columns[0] = weak.columns[0].of_segment(0)));
+        assert!(refused(&|weak| weak.columns[1] = Column::new(Drag, None)));
+        assert!(refused(&|weak| weak.squares = 1.8 * 95.0 * variance));
+        assert!(likeliest(&all, &with(0.0), 0.1 * 1e-8).is_none());
+        let far = Unknowns { x: base.at.x + Coordinates::repeat(4e-3), ..base.at.clone() };
+        assert!(likeliest(&all, &estimated(&all[0], &far), variance).is_none());
     }
 }

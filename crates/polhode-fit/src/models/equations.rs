@@ -232,7 +232,7 @@ mod tests {
     fn equations_stand_where_the_estimate_does() {
         let times: Vec<f64> = (0..60).map(|k| 0.25 * f64::from(k)).collect();
         let rates = times.iter().map(|t| Vector3::new(0.5 + 0.1 * t, 0.8 - 0.05 * t, 0.3)).collect();
-        let (stretch, noise) = (Stretch::new(times, rates), vec![Vector3::zeros(); 60]);
+        let (stretch, noise) = (Stretch::new(times, rates), vec![Vector3::<f64>::zeros(); 60]);
         let (drag, scale) = (Column::new(Drag, None), Column::new(Scale, Some(0.2)));
         let columns = vec![drag, scale];
         let x = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.2, 0.35, 0.45)));
