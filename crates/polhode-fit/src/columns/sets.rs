@@ -104,6 +104,11 @@ mod tests {
     use nalgebra::{Matrix3, Vector3};
 
     use super::*;
+    use crate::columns::dissipation::dissipation;
+    use crate::columns::effect::Class;
+    use crate::columns::input::Input;
+    use crate::columns::rotor::Rotor;
+    use crate::columns::wheel_axis::WheelAxis;
     use crate::thresholds::errors::HELD;
 
     #[test]
@@ -169,10 +174,67 @@ mod tests {
             (Column::new(walk, None), "rad/s", 4.0),
             (Column::new(Skew(1), None), "s", 0.25),
             (Column::new(Scale, None), "", 1.0),
+            (Column::new(AxisScale(2), None), "", 1.0),
+            (Column::new(Misalignment(0), None), "rad", 1.0),
+            (Column::new(Offset(2), None), "rad/s", 4.0),
+            (Column::new(Constant(0), None), "rad/s^2", 16.0),
+            (Column::new(Input, None), "1/(kg m^2)", 1.0),
+            (Column::new(WheelAxis(1), None), "1/(kg m^2)", 1.0),
+            (Column::new(Rotor(1), None), "of |L|", 1.0),
         ];
         for (column, unit, factor) in rows {
             assert_eq!((column.label().unit, column.label().factor(4.0)), (unit, factor));
         }
+    }
+
+    /// With ω = P y − b a reading y shows less of ω where P is larger, more of it where b is, and of a late axis the rate of an earlier time;
+    /// what is no error of the sensor changes no reading. Each of these errors has a size of which a report speaks.
+    #[test]
+    fn errors_of_the_sensor_change_readings_and_rates() {
+        let (w, slope, none) = (Vector3::new(2.0, 3.0, 5.0), Vector3::new(7.0, 11.0, 13.0), Vector3::zeros());
+        let half = |x: f64, y: f64, z: f64| Vector3::new(x, y, z) * 0.5;
+        let rows = [
+            (Column::new(Scale, None), -w, Some(w)),
+            (
+                Column::new(AxisScale(1), None),
+                Vector3::new(0.0, -3.0, 0.0),
+                Some(Vector3::new(0.0, 3.0, 0.0)),
+            ),
+            // angles of y and z, of x and z, and of x and y
+            (Column::new(Misalignment(0), None), half(0.0, -5.0, -3.0), Some(half(0.0, 5.0, 3.0))),
+            (Column::new(Misalignment(1), None), half(-5.0, 0.0, -2.0), Some(half(5.0, 0.0, 2.0))),
+            (Column::new(Misalignment(2), None), half(-3.0, -2.0, 0.0), Some(half(3.0, 2.0, 0.0))),
+            (Column::new(Offset(2), None), Vector3::z(), Some(-Vector3::z())),
+            (Column::new(Skew(1), None), Vector3::new(0.0, -11.0, 0.0), None),
+        ];
+        for (column, of_reading, of_rate) in rows {
+            let (name, effect) = (column.label().name, column.effect());
+            assert_eq!(effect.change_of_reading(&w, &slope, 0.0), Some(of_reading), "{name}");
+            assert_eq!(effect.change_of_rate(&w), of_rate, "{name}");
+            assert!(effect.reported_size().is_some() && column.class() == Class::Sensor, "{name}");
+        }
+        for column in [Column::new(Drag, None), Column::new(Constant(0), None), Column::new(Input, None)] {
+            assert_eq!(column.effect().change_of_reading(&w, &none, 0.0), None);
+            assert!(
+                column.effect().change_of_rate(&w).is_none() && column.effect().reported_size().is_none()
+            );
+        }
+        let classes = [Class::Drag, Class::Torque, Class::Sensor, Class::Momentum, Class::Input];
+        assert_eq!(classes.map(Class::is_torque), [true, true, false, false, false]);
+    }
+
+    /// Of the columns that are kept those of drag take energy, by their places among them.
+    #[test]
+    fn drag_takes_energy_at_its_place() {
+        let columns = [
+            Column::new(Offset(0), None),
+            Column::new(Drag, None),
+            Column::new(Constant(0), None),
+            Column::new(Viscous(2), None),
+        ];
+        let found = dissipation(&columns, &[3, 0, 1]);
+        let found: Vec<(usize, &str)> = found.iter().map(|of| (of.place, of.name)).collect();
+        assert_eq!(found, [(0, "drag_zz"), (2, "drag")]);
     }
 
     /// Drag slows a rate of size 13 by itself, by thirteen times itself, and by its own axis over that moment.
