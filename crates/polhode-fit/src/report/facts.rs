@@ -103,7 +103,7 @@ impl Facts<'_> {
         let at = self.joint.unknowns(&nearest.others, nearest.x);
         let (inertia, inertia_covariance) =
             self.absolute(&j, &covariance, &together, motions.as_ref(), &at)?;
-        let excess = self.variance * self.misfit.max(1.0);
+        let excess = self.enlarged();
         let terms = terms_of_all(&weak.columns, &at);
         let torque_noise = |stretch| self.torque_noise(stretch, &j);
         let (momentum, energy) = trends(self.stretches, |w| terms.rate(w), &j, excess, torque_noise);
@@ -194,16 +194,20 @@ impl Facts<'_> {
         self.misfit.max(1.0) * self.scatter.map_or(1.0, |scatter| scatter.excess())
     }
 
+    /// Variance of the noise with what it does not explain.
+    fn enlarged(&self) -> f64 {
+        self.variance * self.misfit.max(1.0)
+    }
+
     /// Root of the trace of the covariance under the chosen model alone.
     fn statistical(&self) -> Option<f64> {
-        let deviation = (self.variance * self.misfit.max(1.0)).sqrt();
-        self.chosen.weak.root.try_inverse().map(|factor| factor.norm() * deviation)
+        self.chosen.weak.root.try_inverse().map(|factor| factor.norm() * self.enlarged().sqrt())
     }
 
     /// What warnings are drawn from.
     fn grounds<'b>(&'b self, open: Option<&'b Others>, left: Option<(f64, f64)>) -> Grounds<'b> {
         let found = self.settings.torque == TorqueModel::Auto;
-        let excess = self.variance * self.misfit.max(1.0);
+        let excess = self.enlarged();
         let equations = self.chosen.equations.as_ref().filter(|_| found);
         Grounds {
             left,
@@ -348,5 +352,130 @@ impl Facts<'_> {
             }
         })
         .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::columns::column::Column;
+    use crate::columns::drag::Drag;
+    use crate::columns::input::Input;
+    use crate::physical::coordinates::{Coordinates, coordinates};
+    use crate::signal::covariance::Shape;
+    use crate::solve::weak_estimate::WeakEstimate;
+    use crate::solve::weak_estimate::tests::one_row_each;
+
+    fn body() -> Matrix3<f64> {
+        Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45)
+    }
+
+    /// Of a record in units of 2 rad/s with a drag and an input of 4 per unit, which are told with the weights 10 and 20, and a tensor that is told
+    /// with 40, for noise of the variance 0.25; what `ask` asks of it where so much is left.
+    fn asked<T>(misfit: f64, scatter: Option<Scatter>, ask: impl FnOnce(&Facts<'_>) -> T) -> T {
+        let columns = [Column::new(Drag, None), Column::new(Input, None)];
+        let at = Unknowns { x: coordinates(&body()), c: vec![0.1, 4.0] };
+        let rows = one_row_each(&[10.0, 20.0, 40.0, 40.0, 40.0, 40.0, 40.0], &[0.0; 7]);
+        let mut weak = WeakEstimate::of_rows(&columns, &at, vec![rows], 0.5);
+        weak.parts[0].stretch = 1;
+        weak.parts[0].levels = Levels { white: 2.0, torque: 3.0, shape: Shape::Alike };
+        let joint = Joint::new(&weak, |column| column.class() == Class::Input, 0.5).unwrap();
+        let (model, gain, without) = (TorqueModel::Drag, Some(9.0), Some(coordinates(&body())));
+        let chosen = Chosen { weak, model, gain, without, models: Vec::new(), equations: None };
+        ask(&Facts {
+            record: &Record::default(),
+            settings: &Settings::default(),
+            stretches: &[],
+            rms: 2.0,
+            variance: 0.25,
+            chosen: &chosen,
+            misfit,
+            scatter,
+            differing: None,
+            spikes: Vec::new(),
+            input: Some(8.0),
+            told: &joint.told,
+            joint: &joint,
+            per_segment: Vec::new(),
+            is_exact: false,
+            prior: None,
+            suspect: None,
+            dissipation: &[],
+        })
+    }
+
+    /// Noise that does not explain the residuals is enlarged by what it leaves, and not where they are less; parts that scatter enlarge it further. Five
+    /// numbers with the weight 40 have the deviation √5/40 of it, a drag with 10 a tenth of it.
+    #[test]
+    fn noise_is_enlarged_by_what_it_does_not_explain() {
+        for (misfit, times) in [(0.5, 1.0), (1.2, 1.2), (3.0, 3.0)] {
+            let deviation = f64::sqrt(5.0 * 0.25 * times) / 40.0;
+            let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 1e-6;
+            asked(misfit, None, |facts| {
+                assert!(
+                    near(facts.enlarged(), 0.25 * times) && near(facts.statistical().unwrap(), deviation)
+                );
+                assert_eq!(facts.excess(), times);
+            });
+            let scatter = Some(Scatter { parts: 8, chi2: 140.0, dof: 35 });
+            asked(misfit, scatter, |facts| {
+                assert!(near(facts.enlarged(), 0.25 * times) && near(facts.excess(), 4.0 * times));
+                let at = &facts.chosen.weak.at;
+                let (torque, sensor) = facts.nuisances(at, &[]);
+                let [drag] = &torque.coefficients[..] else { panic!("{torque:?}") };
+                // in 1/s, and the input is none of them
+                assert!(drag.name == "drag" && near(drag.value, 0.2) && sensor.is_empty(), "{drag:?}");
+                assert!(near(drag.sigma, 2.0 * 0.05 * f64::sqrt(4.0 * times)), "{drag:?}");
+                let (moments, _) = eigen(body());
+                let [low, middle] = torque.ratios_without.unwrap();
+                assert!(near(low, moments[0] / moments[2]) && near(middle, moments[1] / moments[2]));
+                assert!(torque.is_chosen && torque.gain == Some(9.0));
+            });
+        }
+    }
+
+    /// The levels of a stretch are those of its part, and white of one without; torque noise alike along all axes has a ninth of its level, over the
+    /// noise. A multiplier of drag is per 1/s.
+    #[test]
+    fn levels_and_multipliers_have_their_units() {
+        asked(1.0, None, |facts| {
+            assert_eq!((facts.levels(0), facts.levels(1).torque), (Levels::WHITE, 3.0));
+            assert_eq!(facts.torque_noise(0, &body()), Matrix3::zeros());
+            let expected = Matrix3::identity() * (3.0 * 0.25 / 9.0);
+            assert!((facts.torque_noise(1, &body()) - expected).amax() < 1e-15);
+            let of =
+                |constraint| facts.in_seconds(ActiveConstraint { constraint, multiplier: 6.0 }).multiplier;
+            assert_eq!((of(Constraint::Drag { name: "drag" }), of(Constraint::Triangle)), (3.0, 6.0));
+        });
+    }
+
+    /// The tensor is J/u where u stands five deviations out of its noise, with the covariance of differences by u and by the tensor.
+    #[test]
+    fn a_tensor_by_inputs_has_the_covariance_of_its_quotient() {
+        asked(1.0, None, |facts| {
+            let (x, u, unit) = (coordinates(&body()), 4.0, 8.0);
+            let at = Unknowns { x, c: vec![0.1, u] };
+            let factor = DMatrix::from_fn(6, 6, |i, k| 1e-3 / (1.0 + ((3 * i + 2 * k) % 5) as f64));
+            let together = &factor * factor.transpose();
+            assert_eq!(facts.size(&together, &at), Some((0, u / together[(0, 0)].sqrt())));
+            let (inertia, covariance) = facts.by_inputs(&body(), unit, &together, &at).unwrap();
+            assert!((inertia.unwrap().tensor() - body() * 2.0).amax() < 1e-14);
+            let moved = |k: usize, by: f64| {
+                let step = Coordinates::from_fn(|i, _| by * factor[(i + 1, k)]);
+                let j = tensor(&(x + step)) * (unit / (u + by * factor[(0, k)]));
+                SMatrix::<f64, 6, 1>::from_fn(|row, _| j[ENTRIES[row]])
+            };
+            let expected: SMatrix<f64, 6, 6> = (0..6)
+                .map(|k| (moved(k, 0.1) - moved(k, -0.1)) / 0.2)
+                .map(|slope| slope * slope.transpose())
+                .sum();
+            assert!((covariance.unwrap() - expected).amax() < 1e-6 * expected.amax());
+            for (deviations, is_told) in [(0.999 * SURE, false), (1.001 * SURE, true)] {
+                let mut together = together.clone();
+                together[(0, 0)] = (u / deviations) * (u / deviations);
+                let (inertia, covariance) = facts.by_inputs(&body(), unit, &together, &at).unwrap();
+                assert_eq!((inertia.is_some(), covariance.is_some()), (is_told, is_told));
+            }
+        });
     }
 }

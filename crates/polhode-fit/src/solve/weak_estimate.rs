@@ -185,10 +185,58 @@ impl WeakEstimate {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use crate::physical::coordinates::coordinates;
+    use crate::signal::test_functions::TestFunctions;
     use nalgebra::Matrix3;
+
+    impl WeakEstimate {
+        /// Of whitened rows of several parts at `at`, for noise of this deviation; of what they are made of nothing is to be asked.
+        pub(crate) fn of_rows(
+            columns: &[Column],
+            at: &Unknowns,
+            parts: Vec<Vec<f64>>,
+            deviation: f64,
+        ) -> WeakEstimate {
+            let times: Vec<f64> = (0..17).map(|k| 0.125 * f64::from(k)).collect();
+            let stretch = Stretch::new(times, vec![Vector3::x(); 17]);
+            let part = |(k, rows): (usize, Vec<f64>)| {
+                let (noise, tests) = (vec![Vector3::zeros(); 17], TestFunctions::new(&stretch, 1.0).unwrap());
+                let linearised = Linearised::new(&stretch, &noise, columns, at.clone(), tests);
+                Part { stretch: k, linearised, rows, levels: Levels::WHITE, log_determinant: 0.0, noise }
+            };
+            let parts: Vec<Part> = parts.into_iter().enumerate().map(part).collect();
+            let rows: Vec<&[f64]> = parts.iter().map(|part| part.rows.as_slice()).collect();
+            let stacked = Stacked::new(&rows, columns, at, deviation);
+            WeakEstimate {
+                radius: 1.0,
+                columns: columns.to_vec(),
+                at: at.clone(),
+                moved: 0.0,
+                root: stacked.root,
+                doubt: Form::zeros(),
+                squares: stacked.squares,
+                rows: stacked.rows,
+                stacked: Some(stacked),
+                parts,
+            }
+        }
+    }
+
+    /// One row for each unknown that tells it alone with this weight, and leaves so much.
+    pub(crate) fn one_row_each(weights: &[f64], left: &[f64]) -> Vec<f64> {
+        let count = weights.len();
+        let row = |i: usize| {
+            let entry = move |k: usize| match k {
+                k if k == i => weights[i],
+                k if k == count => left[i],
+                _ => 0.0,
+            };
+            (0..=count).map(entry)
+        };
+        (0..count).flat_map(row).collect()
+    }
 
     /// Of moments of which the largest is this one, with an information of the square of `root` and a hundred degrees of freedom that leave
     /// four times the noise of variance 0.25.
