@@ -113,6 +113,10 @@ impl Differing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::columns::column::{Column, Unknowns};
+    use crate::columns::drag::Drag;
+    use crate::physical::coordinates::Coordinates;
+    use crate::solve::weak_estimate::tests::one_row_each;
 
     /// Displacements of three columns and the tensor: the squares of a column add up, and of those that are kept the rows stay in their order.
     #[test]
@@ -125,5 +129,46 @@ mod tests {
         let rows = [[3.0, -1.0], [1.0, -3.0], [4.0, 0.0], [5.0, 1.0], [6.0, 2.0], [7.0, 3.0], [8.0, 4.0]];
         assert_eq!(kept, DMatrix::from_fn(7, 2, |i, k| rows[i][k]));
         assert_eq!(differing.of(&[]), DMatrix::from_fn(5, 2, |i, k| rows[i + 2][k]));
+    }
+
+    /// Eight parts that tell each unknown alike, and one of them too high and too low by turns: a part has 7/8 of its noise beside the others, and
+    /// the unknown the variance of the pulls, where their mean square is more than chance brings. It is the same in one segment or in as many.
+    #[test]
+    fn an_unknown_has_the_variance_of_the_pulls_of_all_parts() {
+        let (weights, variance) = ([10.0, 20.0, 30.0, 40.0, 50.0, 60.0], 0.25_f64);
+        let columns = [Column::new(Drag, None)];
+        let at = Unknowns::at(Coordinates::zeros(), &columns);
+        let of = |k: usize, ratio: f64, segments: usize| {
+            let part = |part: usize| {
+                let mut left = [0.0; 6];
+                left[k] = (0.875 * variance * ratio).sqrt() * if part % 2 == 0 { 1.0 } else { -1.0 };
+                one_row_each(&weights, &left)
+            };
+            let parts: Vec<Vec<f64>> = (0..CUTS).map(part).collect();
+            let parts: Vec<Vec<f64>> = parts.chunks(CUTS / segments).map(|own| own.concat()).collect();
+            differing(&WeakEstimate::of_rows(&columns, &at, parts, variance.sqrt()), variance)
+        };
+        for k in 0..6 {
+            let (chance, name) = if k == 0 { (DIFFERING, "drag") } else { (SCATTERED, "the tensor") };
+            let least = quantile(8.0, chance) / 8.0;
+            let before = variance / (8.0 * weights[k] * weights[k]);
+            for segments in [1, 2, 8] {
+                assert!(of(k, 0.999 * least, segments).is_none(), "{k} {segments}");
+                let found = of(k, 1.001 * least, segments).unwrap();
+                assert_eq!(found.all().len(), 1, "{k} {segments}");
+                for other in 0..6 {
+                    let more = if other == k { (1.001 * least - 1.0) * before } else { 0.0 };
+                    assert!((found.variance(other) - more).abs() < 1e-6 * before, "{k} {other}");
+                }
+                // what is named differs by far
+                let of_name = if k == 0 { NAMED } else { SCATTERED };
+                let by_far = quantile(8.0, of_name) / 8.0;
+                assert!(k > 0 || of(k, 0.999 * by_far, segments).unwrap().named.is_empty());
+                let named = of(k, 1.001 * by_far, segments).unwrap().named;
+                let [(found, factor)] = named[..] else { panic!("{named:?}") };
+                let expected = (1.001 * by_far).sqrt();
+                assert!(found == name && (factor / expected - 1.0).abs() < 1e-6, "{k} {factor}");
+            }
+        }
     }
 }

@@ -392,4 +392,19 @@ mod tests {
         assert!((motion.rms().unwrap() - (25.0_f64 / 6.0).sqrt()).abs() < 1e-14);
         assert!(FittedMotion { fitted: None, ..motion }.rms().is_none());
     }
+
+    /// Pushed against its drag, w' = 1 − w², a ball that starts at rest has the rate tanh t. From readings that have nearly reached the last rate whole
+    /// steps lead past the start, and damped ones to it, where the damping falls again.
+    #[test]
+    fn steps_that_go_too_far_are_damped_until_they_do_not() {
+        let times = vec![0.0, 0.9, 1.0, 1.1];
+        let measured: Vec<Vector3<f64>> = times.iter().map(|t| Vector3::x() * libm::tanh(*t)).collect();
+        let ball = free(Matrix3::identity() / 3.0);
+        let law = Law { quadratic: 1.0, torque: Vector3::x() / 3.0, ..ball };
+        let s = Segment::new("toss", times, measured.clone()).unwrap();
+        let found = law.nearest(&s, &measured, &[false, true, true, true]).unwrap();
+        for (found, measured) in found.iter().zip(&measured).skip(1) {
+            assert!((found - measured).amax() < 1e-6, "{found} {measured}");
+        }
+    }
 }

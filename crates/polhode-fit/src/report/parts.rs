@@ -173,6 +173,83 @@ pub(super) fn rows_between(weak: &WeakEstimate, shares: [f64; 2]) -> Vec<&[f64]>
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::columns::column::Unknowns;
+    use crate::physical::coordinates::coordinates;
+    use crate::solve::weak_estimate::tests::one_row_each;
+    use nalgebra::Matrix3;
+
+    /// Eight parts that tell each number of the tensor with this weight, moved from that of the moments 0.2, 0.3 and 0.5; the variance of
+    /// their noise is a quarter.
+    fn eight(weight: f64, moved: impl Fn(usize) -> Coordinates) -> WeakEstimate {
+        let x = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.2, 0.3, 0.5)));
+        let part = |part: usize| {
+            let left = moved(part) * -weight;
+            // parts are cut at whole equations of three rows
+            let mut rows = one_row_each(&[weight; 5], left.as_slice());
+            rows.extend([0.0; 6]);
+            rows
+        };
+        let at = Unknowns { x, c: Vec::new() };
+        WeakEstimate::of_rows(&[], &at, (0..CUTS).map(part).collect(), 0.5)
+    }
+
+    /// Parts that lie alternately on both sides of their mean scatter by the square of their distances over the noise of each, 35 numbers beside
+    /// the mean of eight, where that is more than chance brings.
+    #[test]
+    fn parts_scatter_by_their_distances_from_the_mean() {
+        let (weight, by_chance) = (20.0, quantile(35.0, SCATTERED));
+        let of = |chi2: f64| {
+            // forty numbers of that size, over their variance
+            let size = (chi2 / 40.0 * 0.25).sqrt() / weight;
+            let sign = |part: usize| if part % 2 == 0 { 1.0 } else { -1.0 };
+            scatter(&eight(weight, |part| Coordinates::repeat(size * sign(part))), 0.25)
+        };
+        assert_eq!(of(0.999 * by_chance), None);
+        let found = of(1.001 * by_chance).unwrap();
+        assert!((found.parts, found.dof) == (8, 35), "{found:?}");
+        assert!((found.excess() * 35.0 / by_chance - 1.001).abs() < 1e-9, "{found:?}");
+    }
+
+    /// A tensor that changes after so many eighths is cut there: with the noise of both sides χ² is the square of the change over it, and
+    /// both tensors are told.
+    #[test]
+    fn a_record_is_cut_where_its_tensor_changes() {
+        let weight = 1e3;
+        for before in 1..CUTS {
+            let of = |chi2: f64| {
+                // the inverses of the information of both sides add up
+                let both = 0.25 / (weight * weight) * (1.0 / before as f64 + 1.0 / (CUTS - before) as f64);
+                let half = 0.5 * (chi2 * both).sqrt();
+                let moved = |part: usize| {
+                    Coordinates::new(if part < before { half } else { -half }, 0.0, 0.0, 0.0, 0.0)
+                };
+                (halves(&eight(weight, moved), 0.25), half * core::f64::consts::FRAC_1_SQRT_2)
+            };
+            assert_eq!(of(0.999 * HALVES).0, None, "{before}");
+            let (found, apart) = of(1.001 * HALVES);
+            let Halves { share, first, second, chi2 } = found.unwrap();
+            assert!(share == before as f64 / 8.0 && (chi2 / HALVES - 1.001).abs() < 1e-6, "{share} {chi2}");
+            for (found, sign) in [(first, 1.0), (second, -1.0)] {
+                let expected = [0.2 + sign * apart, 0.3 - sign * apart, 0.5];
+                for (found, expected) in found.into_iter().zip(expected) {
+                    assert!((found - expected).abs() < 1e-9, "{before}: {found} {expected}");
+                }
+            }
+        }
+    }
+
+    /// Two halves of four parts each know a moment with the variance 2/3 of a coordinate over four: a change may go unseen up to SEEN
+    /// deviations of their difference, and no moment changes by more than half of the trace.
+    #[test]
+    fn what_may_go_unseen_is_measured_by_both_halves() {
+        let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
+        let of = |weight: f64| unseen(&eight(weight, |_| Coordinates::zeros()), 0.25, &axes).unwrap();
+        let deviation = (2.0 / 3.0 * 0.25 * (0.25 + 0.25_f64)).sqrt() / 40.0;
+        for change in of(40.0) {
+            assert!((change / (SEEN * deviation) - 1.0).abs() < 1e-9, "{change}");
+        }
+        assert_eq!(of(0.1), [LARGEST_SHARE; 3]);
+    }
 
     /// A part that tells one number counts for that one, and a part that tells none for nothing.
     #[test]

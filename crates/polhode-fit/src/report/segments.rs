@@ -90,9 +90,47 @@ impl WithoutSegment {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::columns::column::Unknowns;
     use crate::physical::coordinates::coordinates;
     use crate::signal::covariance::Shape;
+    use crate::solve::weak_estimate::tests::one_row_each;
     use nalgebra::Vector3;
+
+    /// Three segments that tell each number with the weights 1, 2 and 2, of which the second lies d off: their shares of the information are
+    /// 1/9 and twice 4/9, and without one of them the tensor is the weighted mean of the others, so many deviations of all from that of all.
+    #[test]
+    fn segments_weigh_by_their_information() {
+        let (weights, d, variance, rms) = ([10.0, 20.0, 20.0], 0.01, 0.25_f64, 2.0);
+        let at = Unknowns { x: Coordinates::repeat(4.0 / 9.0 * d), c: Vec::new() };
+        let off = [0.0, d, 0.0].map(|off| 4.0 / 9.0 * d - off);
+        let part = |k: usize| one_row_each(&[weights[k]; 5], &[weights[k] * off[k]; 5]);
+        let mut weak = WeakEstimate::of_rows(&[], &at, (0..3).map(part).collect(), variance.sqrt());
+        weak.parts[1].levels = Levels { white: 4.0, torque: 3.0, shape: Shape::Alike };
+        let stretches = [5, 6, 7].map(|segment| Stretch {
+            segment,
+            ..Stretch::new((0..segment).map(|k| k as f64).collect(), vec![Vector3::x(); segment])
+        });
+        let found = summaries(&weak, &stretches, variance, rms);
+        // the means 4d/8, 0 and 4d/5
+        let others = [(0.5, 8.0), (0.0, 5.0), (0.8, 5.0)];
+        for (k, (summary, (mean, squares))) in found.iter().zip(others).enumerate() {
+            let SegmentSummary { segment, samples, noise_sigma, torque_noise, weight, .. } = &summary.own;
+            assert_eq!((*segment, *samples), (5 + k, 5 + k));
+            let (noise, torque) = if k == 1 { (2.0, 3.0 * variance * 8.0) } else { (1.0, 0.0) };
+            assert!((noise_sigma / noise - 1.0).abs() < 1e-12 && (torque_noise - torque).abs() < 1e-12);
+            let share = weights[k] * weights[k] / 900.0;
+            assert!((weight / share - 1.0).abs() < 1e-9, "{k}: {weight}");
+            let own = summary.others.as_ref().unwrap();
+            assert!((own.x - Coordinates::repeat(mean * d)).amax() < 1e-12, "{k}: {}", own.x);
+            assert!((own.covariance * (100.0 * squares) - Form::identity()).amax() < 1e-9, "{k}");
+            // of five numbers, each known to σ/30
+            let shift = 5.0_f64.sqrt() * (mean - 4.0 / 9.0).abs() * d * 30.0 / variance.sqrt();
+            assert!((own.shift / shift - 1.0).abs() < 1e-9, "{k}: {} {shift}", own.shift);
+        }
+        let alone = WeakEstimate::of_rows(&[], &at, vec![part(0)], variance.sqrt());
+        let found = summaries(&alone, &stretches, variance, rms);
+        assert!(found.len() == 1 && found[0].others.is_none() && (found[0].own.weight - 1.0).abs() < 1e-12);
+    }
 
     /// Its torque noise becomes that of the body, a third of tr J⁻²/9, and what the others say gets the deviations of enlarged noise and of
     /// what is added.

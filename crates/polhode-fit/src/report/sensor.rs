@@ -222,9 +222,10 @@ mod tests {
     use crate::estimator::fitted;
     use crate::report::systematic::errors;
     use crate::settings::Settings;
+    use crate::settings::sensor::SensorPriors;
     use crate::settings::torque::{TorqueModel, TorqueNoise};
     use crate::signal::normalised::{Normalised, normalised};
-    use crate::simulate::simulate;
+    use crate::simulate::{Disturbances, Gyroscope, simulate, simulate_with};
     use nalgebra::Vector3;
     use polhode::inertia::Inertia;
     use polhode::num::Random;
@@ -272,5 +273,49 @@ mod tests {
             assert!(apart < 1e-3 * variance.sqrt(), "{}: {apart:e}", kind.what);
         }
         assert!(tried.with(&[]).is_none() && tried.with(&[Column::new(Drag, None)]).is_none());
+    }
+
+    /// An error of scale v that the readings tell with the deviation s leaves v²/(s² + d²) over its prior d: what a plausible deviation gains over a
+    /// smaller one is half of the difference, and the smaller one is refuted from the gain on that chance brings. The record then tells v L²/(s² + L²).
+    #[test]
+    fn a_prior_is_refuted_by_the_gain_of_a_plausible_one() {
+        let (body, sigma) = (Inertia::from_moments([1.0, 2.0, 2.6]).unwrap(), 2e-3);
+        let times: Vec<f64> = (0..600).map(|k| 0.05 * f64::from(k)).collect();
+        let (start, none) = (Vector3::new(1.0, 1.6, -0.8), Disturbances::default());
+        let gyroscope = Gyroscope::default().with_noise(sigma).with_scale(0.04);
+        let rates = simulate_with(&body, start, &times, &none, &gyroscope, &mut Random::new(4)).unwrap();
+        let record = Record::from_samples(&times, &rates).unwrap();
+        let settings = Settings::default().with_noise(sigma).with_torque(TorqueModel::None).with_radius(0.5);
+        let settings = settings.with_torque_noise(TorqueNoise::None).with_check_units(false);
+        let settings = settings.with_sensor(SensorPriors::default().with_scale(LARGEST));
+        let mut weak = fitted(&record, &settings).unwrap().drawn.unwrap().weak;
+        let Normalised { stretches, rms, .. } = normalised(&record).unwrap();
+        let variance = (sigma / rms) * (sigma / rms);
+        assert_eq!(refuted(&weak, &stretches, (variance, rms)), None);
+
+        let of = |prior: Option<f64>| {
+            let columns = [Column::new(Scale, prior)];
+            let origin = &weak.stacked.as_ref().unwrap().origin;
+            Stacked::new(&rows_between(&weak, [0.0, 1.0]), &columns, origin, variance.sqrt())
+        };
+        let free = of(None);
+        let (v, factor) = (free.minimiser().unwrap().c[0], free.joint_factor().unwrap());
+        let square = factor.row(0).norm_squared() * variance;
+        let excess = of(Some(LARGEST)).excess(variance);
+        let of_plausible = v * v / (square + LARGEST * LARGEST);
+        let by_chance = quantile(1.0, LEFT_OUT) * excess;
+        // v²/(s² + d²) less that is twice the gain
+        let most = (v * v / (by_chance + of_plausible) - square).sqrt();
+        weak.columns[0].prior = Some(1.001 * most);
+        assert_eq!(refuted(&weak, &stretches, (variance, rms)), None);
+        for prior in [0.999 * most, 0.5 * most] {
+            weak.columns[0].prior = Some(prior);
+            let found = refuted(&weak, &stretches, (variance, rms)).unwrap();
+            let gain = 0.5 * (v * v / (square + prior * prior) - of_plausible);
+            assert!((found.gain / gain - 1.0).abs() < 1e-5, "{prior}: {} {gain}", found.gain);
+            let size = v.abs() * LARGEST * LARGEST / (square + LARGEST * LARGEST);
+            assert!((found.size / size - 1.0).abs() < 1e-5 && found.prior == prior, "{found:?} {size}");
+            assert_eq!((found.what, found.unit), ("an error of scale of the sensor", ""));
+        }
     }
 }

@@ -260,10 +260,18 @@ fn summaries(
 mod tests {
     use super::*;
     use nalgebra::Vector3;
+    use polhode::inertia::Inertia;
+    use polhode::num::Random;
+    use polhode::rotation::Quat;
 
+    use crate::likelihood::track::Track;
     use crate::physical::coordinates::Coordinates;
     use crate::report::parts::quantile;
+    use crate::report::warning::Warning;
+    use crate::settings::torque::TorqueNoise;
     use crate::signal::covariance::Shape;
+    use crate::simulate::{Disturbances, Gyroscope, simulate_poses};
+    use crate::smoothed::search::{Noise, first};
     use crate::thresholds::noise::SURE;
 
     const COUNT: usize = 10;
@@ -324,6 +332,105 @@ mod tests {
                 }
                 found => assert!(found.is_ok() && !is_refused, "{share}: {found:?}"),
             }
+        }
+    }
+
+    /// Two segments of a free body, searched without torque noise; a little of it is then said to act, and one sample to be left out.
+    fn searched() -> Chosen {
+        let x = Coordinates::new(-0.06, 0.02, 0.03, -0.02, 0.04);
+        let (body, mut random) = (Inertia::from_tensor(tensor(&x)).unwrap(), Random::new(14));
+        let tracks = [Vector3::new(0.5, 0.8, -0.4), Vector3::new(-0.7, 0.3, 0.6)].map(|start| {
+            let times: Vec<f64> = (0..60).map(|k| 0.1 * f64::from(k)).collect();
+            let (none, perfect) = (Disturbances::default(), Gyroscope::default());
+            let made = simulate_poses(&body, start, &times, &none, &perfect, 3e-3, &mut random).unwrap();
+            let attitudes = made.attitudes.iter().map(|q| Quat::from(*q)).collect();
+            let times = times.iter().map(|t| t - 2.95).collect();
+            Track { attitudes, rates: Vec::new(), used: vec![true; 60], times }
+        });
+        let noise = Noise { attitude: None, torque: TorqueNoise::None };
+        let mut found = first(&tracks, x, &[], noise).unwrap();
+        found.level.torque = 0.25;
+        found.tracks[0].used[5] = false;
+        let without = found.at.x;
+        Chosen { found, model: TorqueModel::None, gain: 0.0, without, models: Vec::new() }
+    }
+
+    /// The same where the noise is stated to be so many times as large.
+    fn stated(chosen: &Chosen, times: f64) -> Chosen {
+        let (mut found, square) = (chosen.found.clone(), times * times);
+        found.variance *= square;
+        found.information /= square;
+        found.level.torque /= square;
+        found.of_each.iter_mut().for_each(|of| *of /= square);
+        found.without.iter_mut().flatten().for_each(|(_, covariance)| *covariance *= square);
+        found.whitened.iter_mut().flatten().for_each(|(_, left)| *left /= times);
+        Chosen { found, model: chosen.model, gain: chosen.gain, without: chosen.without, models: Vec::new() }
+    }
+
+    /// A noise that is stated as half of what the motion leaves changes nothing but the misfit, which enlarges all deviations by as much; one that
+    /// is stated as twice that is believed, and deviations are twice as large. What is left of the attitudes is the same.
+    #[test]
+    fn a_stated_noise_is_enlarged_by_what_it_does_not_explain() {
+        let chosen = searched();
+        let sigma = chosen.found.variance.sqrt();
+        let read = Read {
+            unit: 2.0,
+            used: vec![(0, 1.0), (2, 9.0)],
+            local_noise: None,
+            rate_noise: None,
+            largest_turn: 0.2,
+            jumps: 4,
+            has_rates: false,
+        };
+        let of = |times: f64| {
+            let settings =
+                Settings::default().with_torque(TorqueModel::None).with_attitude_noise(times * sigma);
+            report(3, &settings, &read, &stated(&chosen, times), Told { is_inverse: true, gain: Some(7.0) })
+                .unwrap()
+        };
+        let near = |found: f64, expected: f64| (found / expected - 1.0).abs() < 1e-9;
+        let own = of(1.0);
+        for (times, deviations) in [(1.0, 1.0), (0.5, 1.0), (2.0, 2.0)] {
+            let found = of(times);
+            let attitudes = found.attitudes.as_ref().unwrap();
+            assert!(
+                near(attitudes.residual, sigma) && near(attitudes.noise_sigma, sigma * deviations),
+                "{times}"
+            );
+            assert_eq!((attitudes.left_out, attitudes.repeated, attitudes.is_inverse), (5, 3, true));
+            assert!(attitudes.noise_is_given && attitudes.direction_gain == Some(7.0));
+            assert!(near(found.chi2_per_dof, 1.0 / (times * times)), "{times}: {}", found.chi2_per_dof);
+            // 120 attitudes, two starts and the tensor
+            assert_eq!((found.dof, found.samples, found.segments), (3 * 120 - 12 - 5, 120, 2));
+            for k in 0..3 {
+                assert!(near(found.sigma_principal[k], deviations * own.sigma_principal[k]), "{times} {k}");
+                assert!(near(found.sigma_axes[k], deviations * own.sigma_axes[k]), "{times} {k}");
+            }
+            for (k, (segment, same)) in found.per_segment.iter().zip(&own.per_segment).enumerate() {
+                assert_eq!((segment.segment, segment.samples), (2 * k, 59 + k));
+                // level times variance times the third power of the unit
+                assert!(
+                    near(segment.torque_noise, 0.25 * sigma * sigma * 8.0)
+                        && near(segment.weight, same.weight)
+                );
+                let (without, same) = (segment.without.unwrap(), same.without.unwrap());
+                assert!(near(without.sigma_ratios[0], deviations * same.sigma_ratios[0]), "{times} {k}");
+                assert!(near(without.shift * deviations, same.shift), "{times} {k}");
+            }
+            assert!(near(found.per_segment.iter().map(|segment| segment.weight).sum(), 1.0));
+            let squares = |e: &Estimate| e.residuals[1].mean_square * times * times;
+            assert!(near(squares(&found), own.residuals[1].mean_square), "{times}");
+            // times are from the middle of the segment, in units of the inverse rate
+            assert!(near(found.residuals[1].times[0], 9.0 - 2.95 / 2.0));
+            let more = found.warnings.iter().find_map(|warning| match warning {
+                Warning::AttitudeResiduals { times, noise } => Some((*times, *noise)),
+                _ => None,
+            });
+            assert_eq!(more.is_some(), times < 1.0, "{:?}", found.warnings);
+            assert!(
+                more.is_none_or(|(times, noise)| near(times, 2.0) && near(noise, 0.5 * sigma)),
+                "{more:?}"
+            );
         }
     }
 }

@@ -110,3 +110,62 @@ pub(crate) fn systematic(
     });
     each.filter(|s| s.principal.iter().all(|v| v.is_finite())).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::columns::scale::Scale;
+    use crate::thresholds::errors::{ALIGNMENT, DELAY, OFFSET, SCALE};
+
+    /// Segments that last for one step of a walk, with momenta of which one of two is zero.
+    fn segments(count: usize) -> Vec<Stretch> {
+        let of = |index| {
+            let rates = vec![Vector3::new(3.0, 0.0, 4.0), Vector3::zeros()];
+            Stretch { index, ..Stretch::new(vec![0.0, 0.64], rates) }
+        };
+        (0..count).map(of).collect()
+    }
+
+    /// Each error has its size in the units of the fit, that of a wheel over the root mean square of the momentum; both directions of a magnet
+    /// are random, and a walk grows with the root of the time.
+    #[test]
+    fn errors_have_their_sizes_in_the_units_of_the_fit() {
+        let (j, rms) = (Matrix3::from_diagonal(&Vector3::new(0.2, 0.3, 0.25)), 4.0);
+        // (0.6² + 1²)/2
+        let momentum = 0.68_f64.sqrt();
+        let lines = lines(&[], &j, &segments(1), rms);
+        for (name, count, size) in [
+            ("scale", 1, SCALE),
+            ("scale_z", 1, SCALE),
+            ("misalignment_xy", 1, ALIGNMENT),
+            ("offset_x", 1, OFFSET / 4.0),
+            ("skew_y", 1, DELAY * 4.0),
+            ("wheel_z", 1, WHEEL * momentum),
+            ("magnet", 9, MAGNET / 48.0),
+            ("walk", 3, WALK / 8.0 * 0.8),
+        ] {
+            let line = lines.iter().find(|line| line.name == name).unwrap();
+            assert_eq!(line.columns.len(), count, "{name}");
+            for (column, found) in &line.columns {
+                assert!((found / size - 1.0).abs() < 1e-12, "{name}: {found} {size}");
+                assert_eq!(column.prior, None, "{name}");
+            }
+        }
+        // those that are fitted are none
+        let own = [Column::new(Scale, Some(0.1))];
+        let names = |own: &[Column]| errors(own, &segments(1), rms).into_iter().map(|c| c.label().name);
+        assert!(names(&[]).any(|name| name == "scale") && !names(&own).any(|name| name == "scale"));
+    }
+
+    /// Magnets of up to six segments and walks of up to sixty steps are asked for.
+    #[test]
+    fn many_segments_are_not_asked_for_magnets_and_walks() {
+        for (count, magnet, walk) in
+            [(6, true, true), (7, false, true), (20, false, true), (21, false, false)]
+        {
+            let lines = lines(&[], &Matrix3::identity(), &segments(count), 1.0);
+            let has = |name: &str| lines.iter().any(|line| line.name == name);
+            assert_eq!((has("magnet"), has("walk")), (magnet, walk), "{count}");
+        }
+    }
+}

@@ -621,4 +621,37 @@ mod tests {
         let none = Found { changes: vec![Vec::new()], ..found };
         assert_eq!(none.unexplained(), 0.0);
     }
+
+    /// Of attitudes that a path follows to the last digit torque noise tells nothing: a little of it is nothing, and so much that each sample stands
+    /// alone is not, as it costs more. Where a torque that the law has not moves the tensor, noise that explains it better is not nothing either.
+    #[test]
+    fn torque_noise_is_nothing_where_it_neither_costs_nor_moves() {
+        let times: Vec<f64> = (0..40).map(|k| 0.1 * f64::from(k) - 1.95).collect();
+        let path = |torque: f64| {
+            let at = Unknowns { x: x(), c: vec![torque, -torque, torque] };
+            let law = Law::new(&at, &torque_columns(TorqueModel::Constant)).unwrap();
+            let mut path = vec![Start { attitude: Quat::identity(), rate: Vector3::new(0.5, 0.8, -0.4) }];
+            for pair in times.windows(2) {
+                let next = law.carry(&path[path.len() - 1], pair[1] - pair[0]).unwrap();
+                path.push(Start { attitude: next.attitude, rate: next.rate });
+            }
+            path
+        };
+        let is_nothing = |torque: f64, level: f64| {
+            let attitudes = path(torque).iter().map(|at| at.attitude).collect();
+            let track = Track { attitudes, rates: Vec::new(), used: vec![true; 40], times: times.clone() };
+            let search = Search {
+                columns: &[],
+                noise: Noise { attitude: Some(1e-3), torque: TorqueNoise::Fitted },
+                tracks: vec![track],
+                at: Unknowns::at(x(), &[]),
+                paths: vec![path(0.0)],
+                level: Level { torque: level, shape: 0 },
+            };
+            let links = search.links(&Law::new(&search.at, &[]).unwrap()).unwrap();
+            search.is_nothing(&links, search.level).unwrap()
+        };
+        assert!(is_nothing(0.0, 0.0) && is_nothing(0.0, 1e-9) && !is_nothing(0.0, 1e3));
+        assert!(!is_nothing(0.02, 1e3));
+    }
 }

@@ -151,4 +151,33 @@ mod tests {
         assert_eq!(given.levels, [(0, Levels { torque: 0.3, ..Levels::WHITE })]);
         assert!(given.misfit < best.misfit && given.sigmas[0] > best.sigmas[0]);
     }
+
+    /// Of two segments, one with a third of the noise that is known and one with three times it, the quiet one has the mean of the square of its own
+    /// and of the known one, 5/9. Noise of one segment alone stays the known one, and torque noise is what is more.
+    #[test]
+    fn segments_of_a_known_body_have_their_own_noise() {
+        let (body, sigma) = (Inertia::from_moments([1.0, 2.0, 2.6]).unwrap(), 2e-3);
+        let times: Vec<f64> = (0..400).map(|k| 0.05 * f64::from(k)).collect();
+        let mut random = Random::new(8);
+        let mut read = |share: f64| {
+            let with = Gyroscope::default().with_noise(share * sigma);
+            let (start, none) = (Vector3::new(0.3, 0.9, 0.5), Disturbances::default());
+            let rates = simulate_with(&body, start, &times, &none, &with, &mut random).unwrap();
+            Record::from_samples(&times, &rates).unwrap()
+        };
+        let (quiet, noisy) = (read(1.0 / 3.0), read(3.0));
+        let x = coordinates(&(body.tensor() / 5.6));
+        let of = |record: &Record| {
+            let Normalised { stretches, rms, .. } = normalised(record).unwrap();
+            let variance = (sigma / rms) * (sigma / rms);
+            held(&stretches, x, &[Column::new(Drag, None)], variance, Noise::Fitted, Some(1.0)).unwrap()
+        };
+        let both = of(&quiet.join(noisy.clone()));
+        let [(0, first), (1, _)] = both.levels[..] else { panic!("{:?}", both.levels) };
+        // the drag of both is off by the noise of the other
+        assert!((0.53..0.75).contains(&first.white) && first.torque == 0.0, "{first:?}");
+        let alone = of(&noisy);
+        let [(0, only)] = alone.levels[..] else { panic!("{:?}", alone.levels) };
+        assert!(only.white == 1.0 && only.torque > 0.0, "{only:?}");
+    }
 }

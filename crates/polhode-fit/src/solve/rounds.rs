@@ -510,6 +510,19 @@ mod tests {
         assert!(Rounds::new(&stretches, 5.0, &[], at).is_none());
     }
 
+    /// Six equations are the fewest: two test functions of one stretch, or one of each of two.
+    #[test]
+    fn rounds_need_six_equations() {
+        let times: Vec<f64> = (0..100).map(|k| 0.1 * f64::from(k)).collect();
+        let stretches = [0, 1].map(|_| Stretch::new(times.clone(), vec![Vector3::x(); 100]));
+        let of = |count: usize, share: f64| {
+            let radius = stretches[0].duration() * share;
+            Rounds::new(&stretches[..count], radius, &[], Unknowns::at(Coordinates::zeros(), &[])).is_some()
+        };
+        // a quarter of a radius beside the first one has room for a second
+        assert!(!of(1, 0.5) && of(1, 1.0 / 2.25) && of(2, 0.5));
+    }
+
     /// Rounds go on with the levels and the noise of each stretch by its number, with the tensor, and with the columns that both have; a stretch
     /// that is not among the others is like the first of a part of the record, and of a whole one they do not go on.
     #[test]

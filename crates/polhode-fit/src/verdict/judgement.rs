@@ -169,9 +169,45 @@ fn identify(weak: &WeakEstimate, stretches: &[Stretch], variance: f64) -> Option
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::columns::column::Unknowns;
+    use crate::columns::column::{Column, Unknowns};
+    use crate::columns::drag::Drag;
+    use crate::columns::offset::Offset;
     use crate::physical::coordinates::Coordinates;
+    use crate::solve::weak_estimate::tests::one_row_each;
+    use crate::thresholds::identifiability::VAGUE;
     use nalgebra::Vector3;
+
+    /// A torque is told up to a deviation of one unit of the rate, where the record that tells it was used. Of a record that leaves the tensor open a
+    /// torque is to blame where the tensor would be told without it.
+    #[test]
+    fn torques_that_a_record_cannot_tell_are_found() {
+        let stretches = [Stretch::new(vec![0.0, 1.0], vec![Vector3::new(0.5, 0.8, -0.4); 2])];
+        let variance = 0.25_f64;
+        let of = |drag: Column, deviation: f64, last: f64, rank: usize| {
+            let columns = [Column::new(Offset(1), None), drag];
+            let at = Unknowns::at(Coordinates::zeros(), &columns);
+            // offsets that are open are no torque
+            let weights = [1e-2, variance.sqrt() / deviation, 1e3, 1e3, 1e3, 1e3, last];
+            let rows = one_row_each(&weights, &[0.0; 7]);
+            let weak = WeakEstimate::of_rows(&columns, &at, vec![rows], variance.sqrt());
+            let singular = Coordinates::from_fn(|k, _| if k < rank { 1e3 } else { 0.0 });
+            let scatter = scatter_of(&stretches);
+            let body = Matrix3::from_diagonal(&Vector3::new(0.2, 0.3, 0.5));
+            let told = Identifiability::new(&(singular, Form::identity()), &scatter, &body);
+            untold(&weak, &stretches, variance, &told)
+        };
+        let drag = Column::new(Drag, None);
+        assert!(of(drag, 0.999 * UNTOLD, 1e3, 5).is_empty());
+        assert_eq!(of(drag, 1.001 * UNTOLD, 1e3, 5), ["drag"]);
+        // the record has one segment
+        assert_eq!(of(drag.of_segment(0), 1.001 * UNTOLD, 1e3, 5), ["drag"]);
+        assert!(of(drag.of_segment(1), 1.001 * UNTOLD, 1e3, 5).is_empty());
+        assert_eq!(of(drag, 0.5, 1e3, 4), ["drag"]);
+        // a number of the tensor is told to 1/√(weight² over the variance)
+        assert_eq!(of(drag, 0.5, 1.01 * variance.sqrt() / VAGUE, 4), ["drag"]);
+        assert!(of(drag, 0.5, 0.99 * variance.sqrt() / VAGUE, 4).is_empty());
+        assert!(of(Column::new(Offset(0), None), 1.001 * UNTOLD, 1e3, 4).is_empty());
+    }
 
     /// The mean of ω ωᵀ counts each sample once, in whatever stretch it is.
     #[test]
