@@ -449,3 +449,88 @@ fn alignment(free: &Free, information: &Information) -> AlignmentFit {
         moving_gain,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::likelihood::motion::Start;
+    use crate::likelihood::track::Model;
+    use crate::physical::coordinates::coordinates;
+    use crate::poses::free::Read;
+    use polhode::rotation::Vec3;
+
+    /// Where a body is that tumbles about the middle of the third segment, at 5 s.
+    fn tumbling(has_attitudes: bool) -> Free {
+        let x = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.25, 0.35, 0.4)));
+        let start = Start { attitude: Quat::identity(), rate: Vector3::new(0.3, 1.0, -0.4) };
+        let alignment = Quat::identity();
+        let model = Model { x, alignment, is_aligned: false, drag: None, starts: vec![start] };
+        let times = vec![-1.0, 0.0, 1.0];
+        let motion = model.motion(&start).unwrap();
+        let (mut attitudes, mut rates) = (Vec::new(), Vec::new());
+        for moved in times.iter().map(|t| motion.at(*t).unwrap()) {
+            if has_attitudes {
+                attitudes.push(moved.attitude * Quat::exponential(Vec3([0.0, 0.03, 0.0])));
+            } else {
+                rates.push(moved.rate + Vector3::z() * 0.5);
+            }
+        }
+        let followed = Followed {
+            model,
+            is_still: true,
+            tracks: vec![Track { times, attitudes, rates, used: vec![true, false, true] }],
+            levels: Levels { attitude: 0.01, rate: 0.25 },
+            dof: [4.0, 6.0],
+            deviation: 0.0,
+            beyond: Vec::new(),
+        };
+        let read = Read {
+            unit: 2.0,
+            used: vec![(2, 5.0)],
+            local_noise: None,
+            rate_noise: None,
+            largest_turn: 0.0,
+            jumps: 2,
+            has_rates: !has_attitudes,
+        };
+        Free {
+            followed,
+            torque: Acting::Drag,
+            gain: Some(7.0),
+            without: Some(x),
+            models: Vec::new(),
+            alternatives: None,
+            moving: None,
+            misread: None,
+            read,
+            steady: None,
+        }
+    }
+
+    /// Attitudes that are 0.03 rad off are three deviations of a hundredth off, and rates by 0.5 two of a quarter; only samples that are used count, at
+    /// their times in the record. The rates of the motion are those of the model at all samples.
+    #[test]
+    fn residuals_are_in_deviations_at_the_times_of_the_record() {
+        for (has_attitudes, expected) in [(true, Vector3::new(0.0, 3.0, 0.0)), (false, Vector3::z() * 2.0)] {
+            let free = tumbling(has_attitudes);
+            let found = residuals(&free, free.followed.levels).unwrap();
+            let [Residuals { segment: 2, times, values, mean_square }] = &found[..] else {
+                panic!("{found:?}")
+            };
+            assert_eq!(times[..], [4.5, 5.5]);
+            assert!(
+                values.len() == 2 && values.iter().all(|own| (Vector3::from(*own) - expected).amax() < 1e-9)
+            );
+            assert!((mean_square * 3.0 / expected.norm_squared() - 1.0).abs() < 1e-9, "{mean_square}");
+            // two that jump, and one that is not used
+            assert_eq!(outliers(&free), 3);
+            let [path] = &fitted_rates(&free)[..] else { panic!() };
+            assert_eq!((path.segment, &path.times[..]), (2, &[-1.0, 0.0, 1.0][..]));
+            assert!((path.rates[1] - Vector3::new(0.3, 1.0, -0.4)).amax() < 1e-12);
+            let torque = torque(&free, Vec::new(), true);
+            let [low, middle] = torque.ratios_without.unwrap();
+            assert!((low - 0.625).abs() < 1e-12 && (middle - 0.875).abs() < 1e-12, "{low} {middle}");
+            assert!(torque.model == TorqueModel::Drag && torque.is_chosen && torque.gain == Some(7.0));
+        }
+    }
+}

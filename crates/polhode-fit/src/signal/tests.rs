@@ -159,6 +159,33 @@ fn a_stated_noise_is_contradicted_where_the_readings_tell_it() {
     }
 }
 
+/// Twice the noise is contradicted, enlarged by ten deviations of chance in as many numbers: by noise that is stated with rounding beside it, and by
+/// less than the noise or the rounding, where the residuals of the stated one are as small.
+#[test]
+fn a_contradiction_is_beyond_twice_the_noise_and_chance() {
+    let mut random = Random::new(12);
+    let rates = (0..2000).map(|_| Vector3::z() + random.normal_vector() * 0.01).collect();
+    let of = [Stretch::new((0..2000).map(f64::from).collect(), rates)];
+    let shown = variance(&of);
+    let chance = |numbers: f64| 1.0 + 10.0 * (2.0 / numbers).sqrt();
+    let most = 4.0 * chance(6000.0);
+    for (share, is_told) in [(0.999, true), (1.001, false)] {
+        let expected = is_told.then_some(shown);
+        let all = share * shown / most;
+        for rounding in [0.0, 0.75 * all] {
+            assert_eq!(contradicting(&of, all - rounding, rounding, (9.0, 300)), expected, "{share}");
+        }
+        for rounding in [0.0, 2.0 * shown] {
+            let stated = most * shown.max(rounding) / share;
+            assert_eq!(contradicting(&of, stated, rounding, (0.0, 0)), expected, "{share}");
+        }
+        for residuals in [1, 300] {
+            let misfit = share / (4.0 * chance(residuals as f64));
+            assert_eq!(contradicting(&of, 1e3 * shown, 0.0, (misfit, residuals)), expected, "{share}");
+        }
+    }
+}
+
 /// Halves of a long stretch that are summed side by side are the whole: sums, covariance and columns beside plain sums over all samples.
 #[test]
 fn a_long_stretch_is_the_sum_of_all_its_samples() {

@@ -486,7 +486,70 @@ mod tests {
     use crate::columns::scale::Scale;
     use crate::physical::coordinates::coordinates;
     use crate::signal::covariance::Shape;
+    use crate::simulate::simulate;
     use nalgebra::Matrix3;
+    use polhode::inertia::Inertia;
+    use polhode::num::Random;
+
+    /// A body of the moments 1, 2 and 2.6 in noise of a hundredth.
+    fn tumbling() -> [Stretch; 1] {
+        let times: Vec<f64> = (0..=200).map(|k| 0.1 * f64::from(k)).collect();
+        let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+        let rates = simulate(&body, Vector3::new(0.5, 0.8, -0.4), &times, 1e-2, &mut Random::new(3)).unwrap();
+        [Stretch::new(times, rates)]
+    }
+
+    /// A round of a misfit that noise does not explain goes half of the way, where it does not have to be whole: tensor, columns and samples. How far
+    /// the whole way is in deviations does not depend on that.
+    #[test]
+    fn a_later_round_under_torques_goes_half_of_the_way() {
+        let (stretches, columns) = (tumbling(), [Column::new(Drag, Some(0.1))]);
+        let at = Unknowns { x: moments(0.2, 0.33, 0.47), c: vec![0.02] };
+        for (variance, is_half) in [(1e-6, true), (1e-3, false)] {
+            let of = |full: bool| {
+                let mut rounds = Rounds::new(&stretches, 1.0, &columns, at.clone()).unwrap();
+                let parts = rounds.linearise();
+                let stacked = rounds.stack(&rounds.whiten(&parts).unwrap(), variance);
+                let (moved, misfit) = rounds.round(variance, full).unwrap();
+                assert_eq!((misfit, misfit >= TORQUES), (stacked.excess(variance), is_half));
+                (rounds, stacked.root, moved, misfit)
+            };
+            let ((whole, root, moved, misfit), (half, _, same, _)) = (of(true), of(false));
+            let share = if is_half { 0.5 } else { 1.0 };
+            let step = whole.at.x - at.x;
+            assert!((half.at.x - at.x - step * share).amax() < 1e-14 && step.norm() > 1e-3);
+            assert!((half.at.c[0] - at.c[0] - (whole.at.c[0] - at.c[0]) * share).abs() < 1e-14);
+            for (whole, half) in whole.noise[0].iter().zip(&half.noise[0]) {
+                assert!((half - whole * share).amax() < 1e-14);
+            }
+            let deviations = (root * step).norm() / (variance * misfit).sqrt();
+            assert!((moved / deviations - 1.0).abs() < 1e-9 && same == moved, "{moved} {deviations}");
+        }
+    }
+
+    /// Noise of four times the variance has a quarter of the information and of the squares, and log 4 more in its determinant for each equation.
+    #[test]
+    fn an_estimate_is_told_at_its_levels() {
+        let stretches = tumbling();
+        let of = |white: f64| {
+            let at = Unknowns { x: moments(1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6), c: Vec::new() };
+            let mut rounds = Rounds::new(&stretches, 1.0, &[], at).unwrap();
+            rounds.levels[0].white = white;
+            rounds.finish(1e-4, 0.25).unwrap()
+        };
+        let (one, four) = (of(1.0), of(4.0));
+        assert!((one.x() - four.x()).amax() < 1e-10 && (one.moved, one.radius) == (0.25, 1.0));
+        let information = |weak: &WeakEstimate| weak.root.tr_mul(&weak.root);
+        assert!((information(&one) - information(&four) * 4.0).amax() < 1e-9 * information(&one).amax());
+        assert!((four.squares * 4.0 / one.squares - 1.0).abs() < 1e-9);
+        assert_eq!((one.doubt, four.doubt, one.rows), (Form::zeros(), Form::zeros(), four.rows));
+        let (first, second) = (&one.parts[0], &four.parts[0]);
+        assert_eq!((first.log_determinant, first.stretch, second.levels.white), (0.0, 0, 4.0));
+        // three equations for each of 4 (20 − 2) + 1 test functions
+        assert_eq!(one.rows, 219);
+        let more = 219.0 * libm::log(4.0);
+        assert!((second.log_determinant / more - 1.0).abs() < 1e-9, "{}", second.log_determinant);
+    }
 
     fn moments(a: f64, b: f64, c: f64) -> Coordinates {
         coordinates(&Matrix3::from_diagonal(&Vector3::new(a, b, c)))

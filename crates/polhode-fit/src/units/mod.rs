@@ -182,4 +182,33 @@ mod tests {
         assert!(Motion::new(&s, 24.9 * variance).unwrap().unexplained(&j).is_some());
         assert!(Motion::new(&s, 25.1 * variance).unwrap().unexplained(&j).is_none());
     }
+
+    /// A free body that leaves q of n equations has the log-likelihood −(n log(q/n) + log |C|)/2 at the weights of the largest; a noise of half the size
+    /// changes nothing, as it has four times the q and n log 4 less in |C|.
+    #[test]
+    fn the_likelihood_does_not_depend_on_the_size_of_the_noise() {
+        let times: Vec<f64> = (0..500).map(|k| 0.04 * f64::from(k)).collect();
+        let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+        let rates = simulate(&body, Vector3::new(0.5, 0.8, -0.4), &times, 0.02, &mut Random::new(2)).unwrap();
+        let motion = Motion::new(&[Stretch::new(times, rates)], 0.0).unwrap();
+        let rows = motion.sums.rows() as f64;
+        let weighted = |larger: f64, determinant: f64| Weighted {
+            gram: motion.plain * larger,
+            log_determinant: determinant - rows * libm::log(larger),
+        };
+        let likelihood = |all: &[Weighted]| {
+            let found = motion.with_likelihood(motion.body(None, 1.0).unwrap(), all);
+            assert!(found.factor == 1.0 && found.product.is_none());
+            found.likelihood
+        };
+        let squares = motion.body(None, 1.0).unwrap().body.squares;
+        // a further step of the body brings next to nothing
+        let expected = -0.5 * (rows * libm::log(squares / rows) + 3.0);
+        let one = likelihood(&[weighted(1.0, 3.0)]);
+        assert!((one - expected).abs() < 0.1, "{one} {expected}");
+        assert!((likelihood(&[weighted(4.0, 3.0)]) - one).abs() < 1e-6 * one.abs());
+        let best = likelihood(&[weighted(1.0, 9.0), weighted(4.0, 1.0), weighted(1.0, 5.0)]);
+        assert!((best - one - 1.0).abs() < 1e-6 * one.abs(), "{best} {one}");
+        assert_eq!(likelihood(&[]), f64::NEG_INFINITY);
+    }
 }

@@ -226,4 +226,18 @@ mod tests {
         assert!((sizes / (squares * w.norm_squared() * w.norm_squared()) - 1.0).abs() < 1e-12);
         assert_eq!(sums.rows(), 3 * sums.own[0].tests.count);
     }
+
+    /// Of rates that change evenly the longest test functions tell most, of eight that double from eight samples on, or of those of which a stretch
+    /// holds four: those of half the width are taken.
+    #[test]
+    fn sums_are_taken_at_half_the_width_that_tells_most() {
+        for (samples, times) in [(12, 1.0), (100, 2.0), (4000, 64.0)] {
+            let even = (0..samples).map(|k| Vector3::x() * (1e-3 * k as f64)).collect();
+            let stretch = Stretch::new((0..samples).map(|k| k as f64).collect(), even);
+            let sums = Sums::of(&[stretch]).unwrap();
+            let lowest = 4.0 * (samples - 1) as f64 / samples as f64;
+            let radius = sums.own[0].tests.radius;
+            assert!((radius / (times * lowest) - 1.0).abs() < 1e-8, "{samples}: {radius} {lowest}");
+        }
+    }
 }

@@ -126,3 +126,56 @@ pub(super) fn is_explained(chosen: &Chosen, variance: f64) -> bool {
 pub(super) fn is_noise(weak: &WeakEstimate, variance: f64) -> bool {
     weak.misfit(variance) <= weak.expected_misfit()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::columns::column::Unknowns;
+    use crate::physical::coordinates::Coordinates;
+    use crate::signal::covariance::Levels;
+    use crate::signal::test_functions::TestFunctions;
+    use crate::solve::linearised::Linearised;
+    use crate::solve::weak_estimate::Part;
+
+    /// A sphere turns steadily, so that its equations leave all that the rates change by. Momenta contradict the rates where more than 15 % of
+    /// that is left beyond the noise, if less than half is noise, and no more than all of it is told.
+    #[test]
+    fn momenta_are_refused_by_what_they_leave() {
+        let times: Vec<f64> = (0..=200).map(|k| 0.1 * f64::from(k)).collect();
+        let rate = |t: &f64| Vector3::new(libm::sin(*t), libm::cos(2.0 * t), 0.5);
+        let stretch = Stretch::new(times.clone(), times.iter().map(rate).collect());
+        let tests = TestFunctions::new(&stretch, 1.0).unwrap();
+        let at = Unknowns { x: Coordinates::zeros(), c: Vec::new() };
+        let found = |left: f64, noise: f64| {
+            let raw = vec![Vector3::zeros(); times.len()];
+            let mut linearised = Linearised::new(&stretch, &raw, &[], at.clone(), tests.clone());
+            let all: f64 = linearised.rows.iter().skip(5).step_by(6).map(|r| r * r).sum();
+            linearised.rows.iter_mut().skip(5).step_by(6).for_each(|r| *r *= left.sqrt());
+            let (white, _) = linearised.covariance(&stretch, &raw).mean_variances();
+            let variance = noise * all / (3 * tests.count) as f64 / white;
+            let mut weak = WeakEstimate::of_rows(&[], &at, Vec::new(), 1.0);
+            let (levels, rows) = (Levels::WHITE, Vec::new());
+            weak.parts =
+                vec![Part { stretch: 0, linearised, rows, levels, log_determinant: 0.0, noise: raw }];
+            check_inputs(&weak, core::slice::from_ref(&stretch), variance)
+        };
+        let told = |left: f64, noise: f64| match found(left, noise) {
+            Err(FitError::Contradicted { unexplained }) => Some(unexplained),
+            other => {
+                assert_eq!(other, Ok(()));
+                None
+            }
+        };
+        for noise in [0.0, 0.1] {
+            let most = DRIVEN * (1.0 - noise) + noise;
+            assert_eq!(told(0.999 * most, noise), None, "{noise}");
+            let unexplained = told(1.001 * most, noise).unwrap();
+            assert!(
+                (unexplained * (1.0 - noise) / (1.001 * most - noise) - 1.0).abs() < 1e-9,
+                "{unexplained}"
+            );
+        }
+        assert_eq!(told(4.0, 0.0), Some(1.0));
+        assert!(told(0.9, 0.999 * AUDIBLE).is_some() && told(0.9, 1.001 * AUDIBLE).is_none());
+    }
+}
