@@ -263,8 +263,12 @@ fn only_of_rates(poses: &Poses, settings: &Settings) -> Result<(), FitError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::likelihood::descent::Levels;
+    use crate::likelihood::track::Model;
+    use crate::physical::coordinates::coordinates;
     use crate::settings::sensor::SensorPriors;
-    use nalgebra::{UnitQuaternion, Vector3};
+    use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+    use polhode::rotation::Quat;
 
     /// A density (rad/s²)² s is over the third power of the unit of the rates; the noise of attitudes is an angle.
     #[test]
@@ -315,5 +319,68 @@ mod tests {
         }
         assert_eq!(named(&bare, &plain().with_noise(0.1)), "the noise of the rates");
         assert_eq!(only_of_rates(&both, &plain().with_noise(0.1)), Ok(()));
+    }
+
+    /// A motion of the moments 0.25, 0.35 and 0.4 that leaves so much of ten numbers.
+    fn left(level: f64) -> Free {
+        let x = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.4, 0.25, 0.35)));
+        let (alignment, attitudes) = (Quat::identity(), vec![Quat::identity()]);
+        let track = Track { times: vec![0.0], attitudes, rates: Vec::new(), used: vec![true] };
+        let followed = Followed {
+            model: Model { x, alignment, is_aligned: false, drag: None, starts: Vec::new() },
+            is_still: true,
+            tracks: vec![track],
+            levels: Levels { attitude: level, rate: 0.0 },
+            dof: [10.0, 0.0],
+            deviation: 0.0,
+            beyond: Vec::new(),
+        };
+        let read = Read {
+            unit: 2.0,
+            used: Vec::new(),
+            local_noise: Some(0.5),
+            rate_noise: None,
+            largest_turn: 0.75,
+            jumps: 0,
+            has_rates: false,
+        };
+        Free {
+            followed,
+            torque: Acting::Nothing,
+            gain: None,
+            without: None,
+            models: Vec::new(),
+            alternatives: None,
+            moving: None,
+            misread: None,
+            read,
+            steady: None,
+        }
+    }
+
+    /// One of ten numbers that leaves e times as much is less likely by ten. What the noise does not explain, which is given or told by
+    /// neighbours, is no free motion, and is told with all three numbers.
+    #[test]
+    fn motions_are_compared_by_what_they_leave() {
+        let more = core::f64::consts::E;
+        assert!((gain(&left(0.1), &left(0.1 * more)) - 10.0).abs() < 1e-12);
+        assert!((gain(&left(0.1 * more), &left(0.1)) + 10.0).abs() < 1e-12);
+        for (found, expected) in moments(&left(1.0)).into_iter().zip([0.25, 0.35, 0.4]) {
+            assert!((found - expected).abs() < 1e-12);
+        }
+        assert!(!is_steady(&left(1.0)));
+        let times: Vec<f64> = (0..4).map(f64::from).collect();
+        let turned = |t: &f64| UnitQuaternion::from_scaled_axis(Vector3::z() * *t);
+        let attitudes: Vec<UnitQuaternion<f64>> = times.iter().map(turned).collect();
+        let poses = Poses::new("a", &times, &attitudes).unwrap();
+        let plain = Settings::default();
+        for (settings, noise) in [(plain.clone(), 0.5), (plain.with_attitude_noise(0.25), 0.25)] {
+            // ten numbers scatter up to six times their mean square
+            let residual = 1.001 * noise * f64::sqrt(6.0);
+            let told = Told { is_inverse: false, gain: None };
+            let found = finished(&poses, &settings, &left(residual), told).err();
+            let expected = PoseFault::NotFree { residual, noise: Some(noise), turn: 0.75 };
+            assert_eq!(found, Some(FitError::Poses(expected)));
+        }
     }
 }

@@ -455,30 +455,33 @@ mod tests {
     use super::*;
     use crate::likelihood::motion::Start;
     use crate::likelihood::track::Model;
+    use crate::physical::certificate::Certificate;
+    use crate::physical::constraint::{ActiveConstraint, Constraint};
     use crate::physical::coordinates::coordinates;
     use crate::poses::free::Read;
     use polhode::rotation::Vec3;
 
-    /// Where a body is that tumbles about the middle of the third segment, at 5 s.
-    fn tumbling(has_attitudes: bool) -> Free {
+    /// Where a body is that tumbles about the middle of the third segment, at 5 s; samples are off by this rotation vector or rate, and the second is
+    /// not used.
+    fn tumbling(times: Vec<f64>, has_attitudes: bool, off: Vector3<f64>) -> Free {
         let x = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.25, 0.35, 0.4)));
         let start = Start { attitude: Quat::identity(), rate: Vector3::new(0.3, 1.0, -0.4) };
         let alignment = Quat::identity();
         let model = Model { x, alignment, is_aligned: false, drag: None, starts: vec![start] };
-        let times = vec![-1.0, 0.0, 1.0];
+        let used = (0..times.len()).map(|k| k != 1).collect();
         let motion = model.motion(&start).unwrap();
         let (mut attitudes, mut rates) = (Vec::new(), Vec::new());
         for moved in times.iter().map(|t| motion.at(*t).unwrap()) {
             if has_attitudes {
-                attitudes.push(moved.attitude * Quat::exponential(Vec3([0.0, 0.03, 0.0])));
+                attitudes.push(moved.attitude * Quat::exponential(Vec3::from(off)));
             } else {
-                rates.push(moved.rate + Vector3::z() * 0.5);
+                rates.push(moved.rate + off);
             }
         }
         let followed = Followed {
             model,
             is_still: true,
-            tracks: vec![Track { times, attitudes, rates, used: vec![true, false, true] }],
+            tracks: vec![Track { times, attitudes, rates, used }],
             levels: Levels { attitude: 0.01, rate: 0.25 },
             dof: [4.0, 6.0],
             deviation: 0.0,
@@ -511,8 +514,10 @@ mod tests {
     /// their times in the record. The rates of the motion are those of the model at all samples.
     #[test]
     fn residuals_are_in_deviations_at_the_times_of_the_record() {
-        for (has_attitudes, expected) in [(true, Vector3::new(0.0, 3.0, 0.0)), (false, Vector3::z() * 2.0)] {
-            let free = tumbling(has_attitudes);
+        for (has_attitudes, off, expected) in
+            [(true, Vector3::y() * 0.03, Vector3::y() * 3.0), (false, Vector3::z() * 0.5, Vector3::z() * 2.0)]
+        {
+            let free = tumbling(vec![-1.0, 0.0, 1.0], has_attitudes, off);
             let found = residuals(&free, free.followed.levels).unwrap();
             let [Residuals { segment: 2, times, values, mean_square }] = &found[..] else {
                 panic!("{found:?}")
@@ -532,5 +537,38 @@ mod tests {
             assert!((low - 0.625).abs() < 1e-12 && (middle - 0.875).abs() < 1e-12, "{low} {middle}");
             assert!(torque.model == TorqueModel::Drag && torque.is_chosen && torque.gain == Some(7.0));
         }
+    }
+
+    /// An answer that a wall holds is one where the likelihood falls to it as foreseen: by no more than four more or less, or by half of the
+    /// larger. Where nothing holds it, or the tensor is known so well that the likelihood is quadratic, that is not asked.
+    #[test]
+    fn an_answer_at_a_wall_is_where_the_likelihood_falls_to_it() {
+        let times = (0..=40).map(|k| 0.1 * f64::from(k) - 2.0).collect();
+        let mut free = tumbling(times, true, Vector3::zeros());
+        free.followed.deviation = NARROW;
+        let x = free.followed.model.x;
+        let wall = || ActiveConstraint { constraint: Constraint::Triangle, multiplier: 1.0 };
+        let certificate = Certificate { stationarity: 0.0, violation: 0.0, dual_violation: 0.0, rounds: 0 };
+        let answer = |x: Coordinates, square: f64, active| Nearest {
+            x,
+            others: Vec::new(),
+            active,
+            pull: f64::sqrt(square),
+            certificate,
+        };
+        let holds =
+            |free: &Free, x: Coordinates, square: f64| holds_at(free, &answer(x, square, vec![wall()]));
+        assert!(holds(&free, x, 0.99 * PARTED) && !holds(&free, x, 1.01 * PARTED));
+        assert!(holds_at(&free, &answer(x, 1e3, Vec::new())));
+        let Followed { model, tracks, levels, .. } = &free.followed;
+        let problem = Problem { tracks, levels: *levels, radius: f64::INFINITY, pull: None };
+        let other = x + Coordinates::new(0.05, 0.0, 0.0, 0.0, 0.0);
+        let found = fall(&problem, model, &other).unwrap();
+        assert!(found > 2.0 * PARTED, "{found}");
+        for (share, is_there) in [(0.49, false), (0.51, true), (1.98, true), (2.02, false)] {
+            assert_eq!(holds(&free, other, share * found), is_there, "{share}");
+        }
+        free.followed.deviation = 0.999 * NARROW;
+        assert!(holds(&free, x, 1e3));
     }
 }

@@ -6,13 +6,21 @@ use nalgebra::{Matrix3, SMatrix, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode::record::{Record, Segment};
+use polhode::rotation::Quat;
 
 use crate::error::FitError;
 use crate::estimator::{Fitted, fit, fitted};
+use crate::likelihood::alternatives::RateError;
+use crate::likelihood::choice::Acting;
+use crate::likelihood::descent::Levels;
+use crate::likelihood::growth::Followed;
+use crate::likelihood::track::Model;
 use crate::models::equations::Equations;
 use crate::models::reading_error::ReadingError;
 use crate::physical::constraint::{ActiveConstraint, Constraint};
 use crate::physical::coordinates::{Coordinates, Form, basis, coordinates, eigen, tensor};
+use crate::poses::free::{Free, Read};
+use crate::poses::misread::Misread;
 use crate::report::answer::{Answer, ratios_of, sigmas};
 use crate::report::attitudes::AttitudeFit;
 use crate::report::estimate::{Estimate, Method, Residuals};
@@ -25,8 +33,8 @@ use crate::report::sensor::{Refuted, Suspect};
 use crate::report::torque_free::{InvariantTrend, Memory, Whiteness, memory, trends};
 use crate::report::warning::Warning;
 use crate::report::warnings::{
-    Doubts, Grounds, has_zero_inputs, of_answer, of_likelihood, of_record, of_smoothed, short_segments,
-    warnings,
+    Doubts, Grounds, has_zero_inputs, of_answer, of_likelihood, of_rates, of_record, of_smoothed,
+    short_segments, warnings,
 };
 use crate::settings::Settings;
 use crate::settings::known::Known;
@@ -803,4 +811,84 @@ fn energies_of_attitudes_differ_beyond_their_slopes() {
     // the trace is what is known over the mean of both in units of 2 rad/s
     let trace = 3.0 / 4.0 / (rate.dot(&(j * rate)) * 0.5 * (1.0 + more));
     assert!((inertia.unwrap().tensor() - j * trace).amax() < 1e-12 * trace && covariance.is_some());
+}
+
+/// A correlation is the covariance over both deviations, and one with what has none is zero.
+#[test]
+fn correlations_are_covariances_over_deviations() {
+    let sizes = [3.0, 0.5, 0.0, 2.0, 1.0, 4.0];
+    let shared = |i: usize, k: usize| if i == k { 1.0 } else { 1.0 / (i + k + 2) as f64 };
+    let mut e = clean();
+    e.covariance = SMatrix::from_fn(|i, k| shared(i, k) * sizes[i] * sizes[k]);
+    let found = e.correlation();
+    for i in 0..6 {
+        for k in 0..6 {
+            let expected = if sizes[i] * sizes[k] > 0.0 { shared(i, k) } else { 0.0 };
+            assert!(f64::abs(found[(i, k)] - expected) < 1e-14, "{i} {k}");
+        }
+    }
+}
+
+/// Of rates beside attitudes what was taken out of them is told, in rad/s or as a share, and what the motion leaves of them where it is more than
+/// chance brings over the noise that is given, or told by neighbours: of 40 numbers 1 + 5 √(10/40).
+#[test]
+fn rates_beside_attitudes_are_warned_of_by_what_is_left() {
+    let free = |times: f64, misread: Option<Misread>, is_aligned: bool| {
+        let followed = Followed {
+            model: Model {
+                x: coordinates(&body()),
+                alignment: Quat::identity(),
+                is_aligned,
+                drag: None,
+                starts: Vec::new(),
+            },
+            is_still: true,
+            tracks: Vec::new(),
+            levels: Levels { attitude: 0.1, rate: 0.5 * times },
+            dof: [100.0, 40.0],
+            deviation: 0.0,
+            beyond: Vec::new(),
+        };
+        let read = Read {
+            unit: 2.0,
+            used: Vec::new(),
+            local_noise: None,
+            rate_noise: Some(1.0),
+            largest_turn: 0.0,
+            jumps: 0,
+            has_rates: true,
+        };
+        Free {
+            followed,
+            torque: Acting::Nothing,
+            gain: None,
+            without: None,
+            models: Vec::new(),
+            alternatives: None,
+            moving: None,
+            misread,
+            read,
+            steady: None,
+        }
+    };
+    let most = f64::sqrt(3.5);
+    assert!(of_rates(&free(0.999 * most, None, true), None).is_empty());
+    let left = |times: f64, noise: f64, given: Option<f64>| {
+        let found = of_rates(&free(times, None, true), given);
+        let [Warning::RateResiduals { times: found, noise: of }] = found[..] else { panic!("{found:?}") };
+        assert!((found * noise / times - 1.0).abs() < 1e-12 && of == noise, "{found} {of}");
+    };
+    left(1.001 * most, 1.0, None);
+    left(1.001 * most, 0.5, Some(0.5));
+    assert!(of_rates(&free(1.001 * most, None, true), Some(2.0)).is_empty());
+    // without both there is no alignment
+    assert!(of_rates(&free(9.0, None, false), None).is_empty());
+    let misread = |error| {
+        let offset = Vector3::new(0.375, 0.0, -0.5);
+        Some(Misread { error, offset, scale: -0.05, gain: 60.0, spread: Form::zeros() })
+    };
+    let of = |error| of_rates(&free(1.0, misread(error), true), None);
+    let is_fitted = true;
+    assert_eq!(of(RateError::Offset), [Warning::RateOffset { size: 1.25, gain: 60.0, is_fitted }]);
+    assert_eq!(of(RateError::Scale), [Warning::RateScale { scale: -0.05, gain: 60.0, is_fitted }]);
 }

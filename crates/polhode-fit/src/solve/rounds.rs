@@ -527,6 +527,23 @@ mod tests {
         }
     }
 
+    /// A descent from boundless torque noise ends at rest at the noise that it is to reach; where that is torque noise, its effect is taken out of
+    /// the derivatives.
+    #[test]
+    fn a_descent_ends_at_the_noise_that_is_asked_for() {
+        let stretches = tumbling();
+        let given = Levels { torque: 0.5, ..Levels::WHITE };
+        for (noise, expected) in [(Noise::White, Levels::WHITE), (Noise::Given(0.5), given)] {
+            let at = Unknowns { x: Coordinates::zeros(), c: Vec::new() };
+            let mut rounds = Rounds::new(&stretches, 1.0, &[], at).unwrap();
+            let moved = rounds.descend(1e-4, noise).unwrap();
+            assert!(moved <= STILL, "{noise:?}: {moved}");
+            assert_eq!((&rounds.levels[..], rounds.driven), (&[expected][..], expected.torque > 0.0));
+            let apart = (rounds.at.x - moments(1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6)).amax();
+            assert!(apart < 0.02, "{noise:?}: {apart}");
+        }
+    }
+
     /// Noise of four times the variance has a quarter of the information and of the squares, and log 4 more in its determinant for each equation.
     #[test]
     fn an_estimate_is_told_at_its_levels() {
