@@ -466,4 +466,23 @@ mod tests {
         }
         assert!(free(9.0, None, true).is_explained(&plain));
     }
+
+    /// Attitudes of a steady spin are told in units of its rate, from the middle of their times. What neighbours tell of the noise counts up to three
+    /// tenths of a radian from one to the next, and a noise that is given before it.
+    #[test]
+    fn attitudes_are_told_in_units_of_their_rate() {
+        for (step, is_told) in [(0.29, true), (0.31, false)] {
+            let poses = poses(&(0..21).map(|k| step * f64::from(k)).collect::<Vec<f64>>());
+            let begun = |settings: Settings| Begun::new(&poses, &settings).ok().unwrap();
+            let Begun { tracks, noise, read, turn, .. } = begun(Settings::default());
+            // half a second from one to the next
+            let unit = 2.0 * step;
+            assert!((read.unit / unit - 1.0).abs() < 1e-9, "{} {unit}", read.unit);
+            assert!((tracks[0].times[0] / (-5.0 * unit) - 1.0).abs() < 1e-9, "{:?}", tracks[0].times);
+            assert!(noise < 1e-9 && turn == Quat::identity(), "{noise}");
+            assert_eq!((read.local_noise, read.rate_noise), (is_told.then_some(noise), None), "{step}");
+            assert!((read.largest_turn - step).abs() < 1e-12 && !read.has_rates);
+            assert_eq!(begun(Settings::default().with_attitude_noise(1e-3)).noise, 1e-3);
+        }
+    }
 }

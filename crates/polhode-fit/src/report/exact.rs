@@ -453,12 +453,15 @@ fn alignment(free: &Free, information: &Information) -> AlignmentFit {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::likelihood::alternatives::RateError;
     use crate::likelihood::motion::Start;
     use crate::likelihood::track::Model;
     use crate::physical::certificate::Certificate;
     use crate::physical::constraint::{ActiveConstraint, Constraint};
     use crate::physical::coordinates::coordinates;
     use crate::poses::free::Read;
+    use crate::poses::misread::Misread;
+    use crate::poses::moving::Moving;
     use polhode::rotation::Vec3;
 
     /// Where a body is that tumbles about the middle of the third segment, at 5 s; samples are off by this rotation vector or rate, and the second is
@@ -570,5 +573,42 @@ mod tests {
         }
         free.followed.deviation = 0.999 * NARROW;
         assert!(holds(&free, x, 1e3));
+    }
+
+    /// The covariance of the tensor is that of the noise that is given, or of what is left where that is more; what moving axes and an error of the rates
+    /// add to it comes on top, and so does what lies beyond the ellipsoid, which grows with the noise and is no part of the curvature.
+    #[test]
+    fn deviations_are_those_of_the_larger_noise_and_of_what_is_beside_it() {
+        let times = (0..=40).map(|k| 0.1 * f64::from(k) - 2.0).collect();
+        let mut free = tumbling(times, true, Vector3::zeros());
+        let of = |free: &Free, noise: Option<f64>| {
+            let settings = Settings::default().with_torque(TorqueModel::None).with_attitude_noise(noise);
+            let Information { levels, tensor, curvature, moved, .. } = information(&settings, free).unwrap();
+            assert_eq!(moved, Coordinates::zeros());
+            (levels.attitude, tensor.try_inverse().unwrap(), curvature.try_inverse().unwrap())
+        };
+        let near = |found: Form, expected: Form| (found - expected).amax() < 1e-7 * expected.amax();
+        let (own, covariance, curvature) = of(&free, None);
+        assert!(own == 0.01 && near(curvature, covariance));
+        let (less, same, _) = of(&free, Some(0.005));
+        assert!(less == 0.01 && near(same, covariance));
+        let (more, twice, _) = of(&free, Some(0.02));
+        assert!(more == 0.02 && near(twice, covariance * 4.0));
+
+        let size = covariance.amax();
+        let spread = Form::identity() * (2.0 * size);
+        free.moving = Some(Moving { turn: Vector3::zeros(), gain: 0.0, spread });
+        let (error, offset) = (RateError::Offset, Vector3::zeros());
+        free.misread = Some(Misread { error, offset, scale: 0.0, gain: 0.0, spread: spread * 0.5 });
+        let beside = spread * 1.5;
+        assert!(near(of(&free, None).1, covariance + beside));
+        let far = Coordinates::new(1.0, -0.5, 0.0, 2.0, 1.0) * size.sqrt();
+        free.followed.beyond = vec![far];
+        let beyond = far * far.transpose();
+        for (noise, times) in [(0.005, 1.0), (0.02, 4.0)] {
+            let (_, found, curvature) = of(&free, Some(noise));
+            assert!(near(found, covariance * times + beside + beyond * times), "{noise}");
+            assert!(near(curvature, covariance * times + beside), "{noise}");
+        }
     }
 }
