@@ -38,8 +38,8 @@ mod tape;
 pub mod trig;
 
 pub use covariance::{Covariance, DistributionError};
-pub(crate) use dd::DdLanes;
 pub use dd::{Dd, ParseDdError};
+pub(crate) use dd::{DdLanes, Doubled};
 #[cfg(any(test, feature = "random"))]
 pub use distribution::Distribution;
 pub use expansion::Expansion;
@@ -47,6 +47,7 @@ pub use lanes::Instructions;
 pub(crate) use lanes::{LANES, Lane};
 #[cfg(any(test, feature = "random"))]
 pub use random::Random;
+pub(crate) use real::Several;
 pub use real::{Precise, Real};
 pub use series::Series;
 #[doc(hidden)]

@@ -1,4 +1,4 @@
-//! The two traits that kernels are generic over.
+//! The traits that kernels are generic over.
 
 use core::fmt::Debug;
 use core::ops::{Add, Div, Mul, Neg, Sub};
@@ -128,6 +128,31 @@ pub trait Precise: Real + PartialOrd {
     fn exp_m1(self) -> Self;
     /// Natural logarithm; NaN of a negative number.
     fn ln(self) -> Self;
+}
+
+/// A number, or several side by side: each has the bits that it has alone.
+///
+/// What is done with each of them by itself stands in a loop over all: an iteration goes on until the last has ended, and those that
+/// have keep what they are.
+pub(crate) trait Several: Real {
+    /// How many there are.
+    const COUNT: usize;
+    /// Number `n`.
+    fn get(&self, n: usize) -> Dd;
+    /// Makes `x` number `n`.
+    fn set(&mut self, n: usize, x: Dd);
+}
+
+impl<S: Precise> Several for S {
+    const COUNT: usize = 1;
+    #[inline(always)]
+    fn get(&self, _: usize) -> Dd {
+        self.to_dd()
+    }
+    #[inline(always)]
+    fn set(&mut self, _: usize, x: Dd) {
+        *self = S::from_dd(x);
+    }
 }
 
 impl Real for f64 {

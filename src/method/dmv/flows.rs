@@ -77,7 +77,7 @@ fn ratio(flow: &[Coefficient], k: usize, last: usize) -> Vec<Lanes> {
             known.add_product(term, &sigma[k]);
         }
         let beta = product(flow, [INCREMENT, INCREMENT + 1 + k], n + 1) * four;
-        terms.push((beta - known).over(&first));
+        terms.push((beta - known) / first);
     }
     terms
 }
@@ -95,6 +95,7 @@ fn product(flow: &[Coefficient], [a, b]: [usize; 2], n: usize) -> Lanes {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::num::Several;
 
     /// The same of one momentum.
     fn alone(m: [Dd; 3], i: [Dd; 3], axis: usize, last: usize) -> Vec<Dd> {

@@ -20,7 +20,7 @@ use std::sync::Arc;
 
 use super::flows::{Lanes, ratios};
 use crate::body::Rotor;
-use crate::num::{Dd, Real};
+use crate::num::{Dd, Real, Several};
 use crate::rotation::Vec3;
 
 /// Terms of s and d up to X⁹: order 20.

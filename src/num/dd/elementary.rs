@@ -3,7 +3,7 @@
 //! Each follows one plan: reduce the argument exactly, sum a Taylor polynomial whose last terms need only
 //! `f64`, or start from the `f64` function and correct it once through its inverse.
 
-use super::Dd;
+use super::{Dd, Doubled};
 use crate::num::Expansion;
 use crate::num::error_free::two_prod;
 
@@ -43,40 +43,67 @@ const FAR: f64 = (1u128 << 100) as f64;
 const LN_2_TAIL: f64 = 5.707708438416212e-34;
 
 /// Σ xᵏ/(FIRST + k STRIDE)!, k = 0, 1, …, up to [`DEGREE`].
-#[inline]
-fn series<const FIRST: usize, const STRIDE: usize>(x: Dd) -> Dd {
+#[inline(always)]
+fn series<S: Doubled, const FIRST: usize, const STRIDE: usize>(x: S) -> S {
     let mut n = FIRST + (DEGREE - FIRST) / STRIDE * STRIDE;
-    let mut light = 0.0;
+    let mut sum = S::of(0.0);
     while n >= LIGHT {
-        light = INVERSE_FACTORIAL[n].hi + x.hi * light;
+        for k in 0..S::COUNT {
+            sum.set(k, Dd::exact(INVERSE_FACTORIAL[n].hi + x.get(k).hi * sum.get(k).hi));
+        }
         n -= STRIDE;
     }
-    let mut sum = Dd::exact(light);
-    while n > FIRST {
-        sum = INVERSE_FACTORIAL[n].plus_smaller(x * sum);
+    while n >= FIRST {
+        let product = x * sum;
+        for k in 0..S::COUNT {
+            sum.set(k, INVERSE_FACTORIAL[n].plus_smaller(product.get(k)));
+        }
         n -= STRIDE;
     }
-    INVERSE_FACTORIAL[FIRST].plus_smaller(x * sum)
+    sum
 }
 
 /// Sine and cosine; from [`FAR`] on, where the trailing part itself makes whole turns, to the digits of a `f64`.
 pub(super) fn sin_cos(x: Dd) -> (Dd, Dd) {
-    if x.hi.abs() <= core::f64::consts::FRAC_PI_4 {
-        return sin_cos_kernel(x);
+    if is_near(x) {
+        return sin_cos_near(x);
     }
-    if x.hi.is_nan() || x.hi.abs() >= FAR {
-        let (sin, cos) = libm::sincos(x.hi);
-        let (s, c) = if x.lo == 0.0 { (Dd::exact(0.0), Dd::ONE) } else { sin_cos(Dd::exact(x.lo)) };
-        return (s * cos + c * sin, c * cos - s * sin);
+    let (sin, cos) = libm::sincos(x.hi);
+    let (s, c) = if x.lo == 0.0 { (Dd::exact(0.0), Dd::ONE) } else { sin_cos(Dd::exact(x.lo)) };
+    (s * cos + c * sin, c * cos - s * sin)
+}
+
+/// Whether the angle `x` is below [`FAR`].
+#[inline(always)]
+pub(super) fn is_near(x: Dd) -> bool {
+    x.hi.abs() < FAR
+}
+
+/// Sine and cosine of angles that are [near](is_near).
+#[inline(always)]
+pub(super) fn sin_cos_near<S: Doubled>(x: S) -> (S, S) {
+    let (mut rest, mut quadrants) = (x, S::of(0.0));
+    for k in 0..S::COUNT {
+        let x = x.get(k);
+        if x.hi.abs() > core::f64::consts::FRAC_PI_4 && is_near(x) {
+            let quarters = (x / Dd::FRAC_PI_2 + 0.5).floor();
+            rest.set(k, minus_half_pi(x, quarters));
+            quadrants.set(k, Dd::exact(quarters.rem_euclid(4.0)));
+        }
     }
-    let quarters = (x / Dd::FRAC_PI_2 + 0.5).floor();
-    let (s, c) = sin_cos_kernel(minus_half_pi(x, quarters));
-    match quarters.rem_euclid(4.0) {
-        0.0 => (s, c),
-        1.0 => (c, -s),
-        2.0 => (-s, -c),
-        _ => (-c, s),
+    let (mut sin, mut cos) = sin_cos_kernel(rest);
+    for k in 0..S::COUNT {
+        let (s, c) = (sin.get(k), cos.get(k));
+        let (s, c) = match quadrants.get(k).hi {
+            0.0 => (s, c),
+            1.0 => (c, -s),
+            2.0 => (-s, -c),
+            _ => (-c, s),
+        };
+        sin.set(k, s);
+        cos.set(k, c);
     }
+    (sin, cos)
 }
 
 /// x − n π/2. Next to a zero, where it may be 10³² times smaller than x, the difference is formed exactly.
@@ -91,12 +118,18 @@ fn minus_half_pi(x: Dd, n: Dd) -> Dd {
     Expansion::sum([x.hi, x.lo].into_iter().chain(terms)).to_dd()
 }
 
-fn sin_cos_kernel(x: Dd) -> (Dd, Dd) {
-    if x.hi == 0.0 {
-        return (x, Dd::ONE);
-    }
+#[inline(always)]
+fn sin_cos_kernel<S: Doubled>(x: S) -> (S, S) {
     let minus_square = -(x * x);
-    (x + x * minus_square * series::<3, 2>(minus_square), minus_square * series::<2, 2>(minus_square) + 1.0)
+    let mut sin = x + x * minus_square * series::<S, 3, 2>(minus_square);
+    let mut cos = minus_square * series::<S, 2, 2>(minus_square) + 1.0;
+    for k in 0..S::COUNT {
+        let x = x.get(k);
+        let is_zero = x.hi == 0.0;
+        sin.set(k, if is_zero { x } else { sin.get(k) });
+        cos.set(k, if is_zero { Dd::ONE } else { cos.get(k) });
+    }
+    (sin, cos)
 }
 
 /// The `f64` angle, turned to the x-axis and corrected by the small angle that is left.
@@ -116,29 +149,34 @@ pub(super) fn atan2(y: Dd, x: Dd) -> Dd {
 }
 
 pub(super) fn exp(x: Dd) -> Dd {
-    let (n, r) = match reduced(x) {
-        Ok(reduced) => reduced,
-        Err(limit) => return Dd::exact(limit),
-    };
-    (r * series::<1, 1>(r) + 1.0).scaled(n)
+    exponential(x)
+}
+
+/// x = n ln 2 + r with |r| ≤ ½ ln 2, or the limit at ±∞.
+#[inline(always)]
+pub(super) fn exponential<S: Doubled>(x: S) -> S {
+    let (mut rest, mut powers) = (x, S::of(0.0));
+    for k in 0..S::COUNT {
+        let x = x.get(k);
+        let n = (x.hi / core::f64::consts::LN_2).round();
+        rest.set(k, x - Dd::product(n, Dd::LN_2.hi) - Dd::product(n, Dd::LN_2.lo) - n * LN_2_TAIL);
+        powers.set(k, Dd::exact(n));
+    }
+    let mut value = rest * series::<S, 1, 1>(rest) + 1.0;
+    for k in 0..S::COUNT {
+        let rounded = libm::exp(x.get(k).hi);
+        let is_limit = rounded == 0.0 || !rounded.is_finite();
+        let scaled = value.get(k).scaled(powers.get(k).hi as i32);
+        value.set(k, if is_limit { Dd::exact(rounded) } else { scaled });
+    }
+    value
 }
 
 pub(super) fn exp_m1(x: Dd) -> Dd {
     if x.hi.abs() < 0.35 {
-        return if x.hi == 0.0 { x } else { x * series::<1, 1>(x) };
+        return if x.hi == 0.0 { x } else { x * series::<Dd, 1, 1>(x) };
     }
     exp(x) - 1.0
-}
-
-/// (n, x − n ln 2) with a rest of at most ½ ln 2, or the limit of the exponential at ±∞.
-fn reduced(x: Dd) -> Result<(i32, Dd), f64> {
-    let value = libm::exp(x.hi);
-    if value == 0.0 || !value.is_finite() {
-        return Err(value);
-    }
-    let n = (x.hi / core::f64::consts::LN_2).round();
-    let rest = x - Dd::product(n, Dd::LN_2.hi) - Dd::product(n, Dd::LN_2.lo) - n * LN_2_TAIL;
-    Ok((n as i32, rest))
 }
 
 /// ln x = n ln 2 + y + ln(m e^−y) with x = 2ⁿ m and y the `f64` logarithm of m; near 1 nothing cancels.

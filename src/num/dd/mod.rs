@@ -24,6 +24,7 @@ pub(crate) use elementary::INVERSE_FACTORIAL;
 mod lanes;
 pub(crate) use lanes::DdLanes;
 mod scalar;
+pub(crate) use scalar::Doubled;
 mod text;
 
 use core::cmp::Ordering;
@@ -70,7 +71,7 @@ impl Dd {
         Dd { hi: x, lo: 0.0 }
     }
 
-    #[inline]
+    #[inline(always)]
     const fn quick(a: f64, b: f64) -> Dd {
         let (hi, lo) = quick_two_sum(a, b);
         Dd { hi, lo }
@@ -142,7 +143,7 @@ impl Dd {
     }
 
     /// The sum with a number smaller than half of `self`, whose error then is no larger than in `+`.
-    #[inline]
+    #[inline(always)]
     const fn plus_smaller(self, b: Dd) -> Dd {
         let (s, e) = quick_two_sum(self.hi, b.hi);
         Dd::quick(s, e + (self.lo + b.lo))

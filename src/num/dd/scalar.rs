@@ -1,8 +1,22 @@
 //! Double-double numbers as scalars of kernels.
 
+use core::ops::{Add, Mul};
+
 use super::{Dd, elementary, ordinary};
 use crate::num::error_free::two_prod;
-use crate::num::{Precise, Real};
+use crate::num::{Precise, Real, Several};
+
+/// A double-double number, or several side by side.
+pub(crate) trait Doubled: Several + Add<f64, Output = Self> + Mul<f64, Output = Self> {
+    /// e to the power of each.
+    fn exponential(self) -> Self;
+}
+
+impl Doubled for Dd {
+    fn exponential(self) -> Dd {
+        elementary::exp(self)
+    }
+}
 
 impl Real for Dd {
     const ROUNDOFF: f64 = f64::EPSILON * f64::EPSILON / 4.0;

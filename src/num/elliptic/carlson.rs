@@ -10,10 +10,11 @@
 //! Sources: B. C. Carlson, Numerical computation of real or complex elliptic integrals, Numer. Algorithms 10
 //! (1995) 13–26; the series to degree seven from NIST DLMF §19.36(i).
 
-use crate::num::{Dd, Precise};
+use crate::num::{Dd, Doubled, Precise, Real, Several};
 
 /// Largest relative distance from the mean at which the series serve.
-fn tolerance<S: Precise>() -> f64 {
+#[inline(always)]
+fn tolerance<S: Real>() -> f64 {
     0.5 * S::ROUNDOFF.sqrt().sqrt().sqrt()
 }
 
@@ -75,10 +76,13 @@ const SUMS: core::ops::Range<i32> = -900..1020;
 const PRODUCTS: core::ops::Range<i32> = -600..600;
 
 /// (denominator + Σ coefficientₖ termₖ) / (denominator · scale).
-fn series<S: Precise, const N: usize>(denominator: f64, terms: [(f64, S); N], scale: S) -> S {
-    let add = |sum: S, &(coefficient, term): &(f64, S)| sum + S::of(coefficient) * term;
-    let sum = S::of(denominator) + terms.iter().rev().fold(S::of(0.0), add);
-    sum / (S::of(denominator) * scale)
+#[inline(always)]
+fn series<S: Real, const N: usize>(denominator: f64, terms: [(f64, S); N], scale: S) -> S {
+    let mut sum = S::of(0.0);
+    for (coefficient, term) in terms.into_iter().rev() {
+        sum = sum + S::of(coefficient) * term;
+    }
+    (S::of(denominator) + sum) / (S::of(denominator) * scale)
 }
 
 /// How many of `arguments` are zero.
@@ -108,50 +112,102 @@ pub fn r_f<S: Precise>(x: S, y: S, z: S) -> S {
 }
 
 /// R_F of each of `arguments`: no step for one of them waits for those for another.
-pub(crate) fn each_r_f<S: Precise, const N: usize>(arguments: [[S; 3]; N]) -> [S; N] {
-    if arguments.iter().all(|&arguments| zeros(arguments) <= 1 && ordinary(arguments)) {
-        duplicated(arguments)
-    } else {
-        arguments.map(|[x, y, z]| r_f(x, y, z))
+#[inline(always)]
+pub(crate) fn each_r_f<S: Doubled, const N: usize>(arguments: [[S; 3]; N]) -> [S; N] {
+    let mut usual = arguments;
+    for (usual, [x, y, z]) in usual.iter_mut().zip(&arguments) {
+        for n in 0..S::COUNT {
+            if !is_usual([x.get(n), y.get(n), z.get(n)]) {
+                for argument in &mut *usual {
+                    argument.set(n, Dd::ONE);
+                }
+            }
+        }
     }
+    let mut values = duplicated(usual);
+    for (value, [x, y, z]) in values.iter_mut().zip(&arguments) {
+        for n in 0..S::COUNT {
+            let [x, y, z] = [x.get(n), y.get(n), z.get(n)];
+            if !is_usual([x, y, z]) {
+                value.set(n, r_f(x, y, z));
+            }
+        }
+    }
+    values
+}
+
+/// Whether these are [`duplicated`] as they are.
+#[inline(always)]
+fn is_usual(arguments: [Dd; 3]) -> bool {
+    zeros(arguments) <= 1 && ordinary(arguments)
+}
+
+/// Whether a triple is not [`together`] yet.
+#[inline(always)]
+fn is_apart<S: Several>([x, y, z]: &[S; 3], n: usize) -> bool {
+    let (x, y, z) = (x.get(n).hi(), y.get(n).hi(), z.get(n).hi());
+    let mean = (x + y + z) / 3.0;
+    let limit = tolerance::<S>() * mean;
+    ((mean - x).abs() > limit) | ((mean - y).abs() > limit) | ((mean - z).abs() > limit)
 }
 
 /// R_F of each of the triples.
-#[inline]
-fn duplicated<S: Precise, const N: usize>(mut triples: [[S; 3]; N]) -> [S; N] {
-    let mut apart = true;
-    while apart {
-        apart = false;
+#[inline(always)]
+fn duplicated<S: Several, const N: usize>(mut triples: [[S; 3]; N]) -> [S; N] {
+    let mut goes_on = true;
+    while goes_on {
+        goes_on = false;
         for triple in &mut triples {
-            let [x, y, z] = *triple;
-            if together((x.to_f64() + y.to_f64() + z.to_f64()) / 3.0, *triple) {
+            let mut apart = false;
+            for n in 0..S::COUNT {
+                apart |= is_apart(triple, n);
+            }
+            if !apart {
                 continue;
             }
-            apart = true;
+            goes_on = true;
+            let [x, y, z] = *triple;
             let (a, b, c) = (x.sqrt(), y.sqrt(), z.sqrt());
             let shift = a * b + b * c + c * a;
-            *triple = [x, y, z].map(|argument| (argument + shift).times_power_of_two(0.25));
+            let mut nearer = [x + shift, y + shift, z + shift];
+            for argument in &mut nearer {
+                *argument = argument.times_power_of_two(0.25);
+            }
+            for n in 0..S::COUNT {
+                let moves = is_apart(triple, n);
+                for (argument, nearer) in triple.iter_mut().zip(&nearer) {
+                    argument.set(n, if moves { nearer.get(n) } else { argument.get(n) });
+                }
+            }
         }
     }
-    triples.map(|[x, y, z]| {
-        let mean = (x + y + z) / S::of(3.0);
-        let (x, y) = ((mean - x) / mean, (mean - y) / mean);
-        let z = -(x + y);
-        let (e2, e3) = (x * y - z * z, x * y * z);
-        series(
-            240_240.0,
-            [
-                (-24_024.0, e2),
-                (17_160.0, e3),
-                (10_010.0, e2 * e2),
-                (-16_380.0, e2 * e3),
-                (6_930.0, e3 * e3),
-                (-5_775.0, e2 * e2 * e2),
-                (15_015.0, e2 * e2 * e3),
-            ],
-            mean.sqrt(),
-        )
-    })
+    let mut values = [S::of(0.0); N];
+    for (value, triple) in values.iter_mut().zip(triples) {
+        *value = symmetric(triple);
+    }
+    values
+}
+
+/// R_F of three numbers next to each other.
+#[inline(always)]
+fn symmetric<S: Real>([x, y, z]: [S; 3]) -> S {
+    let mean = (x + y + z) / S::of(3.0);
+    let (x, y) = ((mean - x) / mean, (mean - y) / mean);
+    let z = -(x + y);
+    let (e2, e3) = (x * y - z * z, x * y * z);
+    series(
+        240_240.0,
+        [
+            (-24_024.0, e2),
+            (17_160.0, e3),
+            (10_010.0, e2 * e2),
+            (-16_380.0, e2 * e3),
+            (6_930.0, e3 * e3),
+            (-5_775.0, e2 * e2 * e2),
+            (15_015.0, e2 * e2 * e3),
+        ],
+        mean.sqrt(),
+    )
 }
 
 /// R_C(x, y) = R_F(x, y, y) for x ≥ 0 and y > 0; infinite at y = 0.
@@ -302,7 +358,7 @@ fn third_kind<S: Precise>(mean: S, x: S, y: S, z: S) -> S {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::num::Real;
+    use crate::num::DdLanes;
 
     /// Side by side every integral has the bits that it has alone, ordinary or not.
     #[test]
@@ -315,6 +371,12 @@ mod tests {
                     [[x, y, 1.0], [y, other, 0.6]].map(|triple| triple.map(|x| Dd::of(x) / Dd::of(3.0)));
                 let alone = triples.map(|[x, y, z]| r_f(x, y, z));
                 assert_eq!(each_r_f(triples), alone, "{triples:?}");
+                let mut lanes = [DdLanes::<2>::all(Dd::ONE); 3];
+                for (n, triple) in triples.into_iter().enumerate() {
+                    lanes.iter_mut().zip(triple).for_each(|(lanes, x)| lanes.set(n, x));
+                }
+                let [found] = each_r_f([lanes]);
+                assert_eq!([found.get(0), found.get(1)], alone, "{triples:?}");
             }
         }
     }

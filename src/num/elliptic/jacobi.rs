@@ -1,7 +1,7 @@
 //! Jacobi's functions from the complementary parameter.
 
 use super::r_f;
-use crate::num::{Dd, Precise};
+use crate::num::{Dd, Precise, Several};
 
 /// Products with integers of this size are still doubles.
 const FAR: f64 = 1e300;
@@ -33,19 +33,7 @@ impl<S: Precise> Modulus<S> {
     /// The modulus of the complementary parameter m1 in [0, 1], or not far above, where m is negative. A negative or
     /// undefined m1 makes all readings NaN.
     pub fn new(m1: S) -> Self {
-        let mut ladder = [(S::of(1.0), m1.sqrt()); STEPS];
-        let mut steps = 1;
-        while steps < STEPS {
-            let (a, b) = ladder[steps - 1];
-            if (a - b).magnitude() <= S::ROUNDOFF.sqrt() * a.magnitude() {
-                break;
-            }
-            ladder[steps] = ((a + b).times_power_of_two(0.5), (a * b).sqrt());
-            steps += 1;
-        }
-        let (a, b) = ladder[steps - 1];
-        let mean = if b == S::of(0.0) { b } else { (a + b).times_power_of_two(0.5) };
-        Modulus { complement: m1, ladder, steps, mean }
+        Self::of(m1)
     }
 
     /// k' = √m1.
@@ -100,6 +88,56 @@ impl<S: Precise> Modulus<S> {
             }
         }
     }
+}
+
+impl<S: Copy> Modulus<S> {
+    /// The same of one number or of several.
+    #[inline(always)]
+    fn of(m1: S) -> Self
+    where
+        S: Several,
+    {
+        let mut ladder = [(S::of(1.0), m1.sqrt()); STEPS];
+        let mut steps = 1;
+        while steps < STEPS {
+            let (a, b) = ladder[steps - 1];
+            let gap = a - b;
+            let mut apart = false;
+            for n in 0..S::COUNT {
+                apart |= is_apart::<S>(gap.get(n), a.get(n));
+            }
+            if !apart {
+                break;
+            }
+            let (mut mean, mut root) = ((a + b).times_power_of_two(0.5), (a * b).sqrt());
+            for n in 0..S::COUNT {
+                let moves = is_apart::<S>(gap.get(n), a.get(n));
+                mean.set(n, if moves { mean.get(n) } else { a.get(n) });
+                root.set(n, if moves { root.get(n) } else { b.get(n) });
+            }
+            ladder[steps] = (mean, root);
+            steps += 1;
+        }
+        let (a, b) = ladder[steps - 1];
+        let mut mean = (a + b).times_power_of_two(0.5);
+        for n in 0..S::COUNT {
+            mean.set(n, if b.get(n) == Dd::ZERO { b.get(n) } else { mean.get(n) });
+        }
+        Modulus { complement: m1, ladder, steps, mean }
+    }
+}
+
+/// Whether a step has to be taken between the arithmetic mean `a` and the geometric one.
+#[inline(always)]
+fn is_apart<S: Several>(gap: Dd, a: Dd) -> bool {
+    let is_near = gap.hi().abs() <= S::ROUNDOFF.sqrt() * a.hi().abs();
+    !is_near
+}
+
+/// K of each complementary parameter, as [`Modulus`] has it.
+#[inline(always)]
+pub(crate) fn quarter_period<S: Several>(m1: S) -> S {
+    S::from_dd(Dd::FRAC_PI_2) / Modulus::of(m1).mean
 }
 
 /// (tanh u, sech u, sech u), the functions at m1 = 0.

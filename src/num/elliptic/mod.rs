@@ -20,4 +20,5 @@ mod jacobi;
 
 pub(crate) use carlson::each_r_f;
 pub use carlson::{r_c, r_d, r_f, r_j};
+pub(crate) use jacobi::quarter_period;
 pub use jacobi::{Modulus, incomplete, jacobi};

@@ -1,56 +1,103 @@
 //! The direct form: trigonometric sums with the nome q.
 
 use super::series::{
-    DD_TERMS, Form, Powers, Series, T, U, V_MINUS, V_PLUS, first, flip, polynomial, rate_at_zero, total,
+    DD_TERMS, Form, LEAST_TERMS, Powers, Series, T, TERMS, U, V_MINUS, V_PLUS, coefficients, first, flip,
+    rate_at_zero, total,
 };
 use crate::flow::free::phase::Phase;
 use crate::flow::free::polhode::Polhode;
-use crate::num::elliptic::{Modulus, each_r_f};
-use crate::num::{Dd, Precise, Real};
+use crate::num::elliptic::{each_r_f, quarter_period};
+use crate::num::{Dd, Doubled, Several};
 
-/// Sums in double-double from which the coefficients are made.
-struct Sums {
-    z_even: [Dd; DD_TERMS],
-    z_odd: [Dd; DD_TERMS],
-    w_even: [Dd; DD_TERMS],
-    w_odd: [Dd; DD_TERMS],
+/// What the series of a polhode are made of.
+const GIVEN: usize = 13;
+
+fn given(polhode: &Polhode<Dd>) -> [Dd; GIVEN] {
+    let ([amp_a, amp_b, amp_c], (sn, cn)) = (polhode.amplitude, polhode.start);
+    let (norm, delta, sigma, flip) = (polhode.norm, polhode.delta, polhode.sigma, flip(polhode));
+    let (complement, parameter, rate) = (polhode.complement, polhode.parameter, polhode.rate);
+    let at_zero = rate_at_zero(polhode);
+    [amp_a, amp_b, amp_c, sn, cn, norm, delta, sigma, flip, complement, parameter, rate, at_zero]
+}
+
+/// The numbers of one [`Series`], or of several, in double-double.
+struct Made<S> {
+    /// Rate and start, in turns.
+    phase: [S; 2],
+    twist_rate: S,
+    /// Even and odd part of Z, and of W.
+    sums: [[S; TERMS]; 4],
+    least: [S; LEAST_TERMS],
+    start: (S, S),
+}
+
+impl<S: Several> Made<S> {
+    /// The series of motion `n`.
+    fn series(&self, n: usize) -> Series {
+        let [rate, start] = self.phase;
+        let [z_even, z_odd, w_even, w_odd] =
+            self.sums.each_ref().map(|sum| sum.each_ref().map(|x| x.get(n).hi()));
+        Series {
+            form: Form::Direct,
+            phase: Phase::new(rate.get(n), start.get(n)),
+            twist_rate: self.twist_rate.get(n),
+            z: [z_even, z_odd],
+            w: [w_even, w_odd],
+            least: self.least.each_ref().map(|x| x.get(n).hi()),
+            start: (self.start.0.get(n), self.start.1.get(n)),
+        }
+    }
 }
 
 pub(super) fn series(polhode: &Polhode<Dd>) -> Series {
-    let [amp_a, amp_b, amp_c] = polhode.amplitude;
-    let (norm, delta) = (polhode.norm, polhode.delta);
+    made(&given(polhode), &[polhode.about_smallest]).series(0)
+}
+
+#[inline(always)]
+fn made<S: Doubled>(numbers: &[S; GIVEN], about_smallest: &[bool]) -> Made<S> {
+    let [amp_a, amp_b, amp_c, sn, cn, norm, delta, sigma, flip, complement, parameter, rate, at_zero] =
+        *numbers;
+    let (zero, one, pi) = (S::of(0.0), S::of(1.0), S::from_dd(Dd::PI));
     // K' − η, finite also for k = 0, and the phase of the start, for which no limit is taken here
-    let (sn, cn) = polhode.start;
-    let of_eta = [amp_c * amp_c / (norm * norm), amp_b * amp_b / (norm * norm), Dd::ONE];
-    let of_phase = [cn * cn, polhode.complement + polhode.parameter * cn * cn, Dd::ONE];
+    let of_eta = [amp_c * amp_c / (norm * norm), amp_b * amp_b / (norm * norm), one];
+    let of_phase = [cn * cn, complement + parameter * cn * cn, one];
     let [of_eta, of_phase] = each_r_f([of_eta, of_phase]);
     let (eta, start) = (amp_a / norm * of_eta, sn * of_phase);
-    let quarter = Modulus::new(polhode.complement).quarter_period();
-    let per_phase = Dd::FRAC_PI_2 / quarter; // x/u
+    let mut is_circle = true;
+    for n in 0..S::COUNT {
+        is_circle &= parameter.get(n) == Dd::ZERO;
+    }
+    // K' of circles is infinite, and q zero
+    let mut quarters = [complement, parameter];
+    for (quarter, is_asked) in quarters.iter_mut().zip([true, !is_circle]) {
+        if is_asked {
+            *quarter = quarter_period(*quarter);
+        }
+    }
+    let [quarter, dual_quarter] = quarters;
+    let per_phase = S::from_dd(Dd::FRAC_PI_2) / quarter; // x/u
     let x0 = start * per_phase;
-    let q = if polhode.parameter == Dd::ZERO {
-        Dd::ZERO
-    } else {
-        (-(Dd::PI * Modulus::new(polhode.parameter).quarter_period() / quarter)).exp()
-    };
-    let h = (-(Dd::PI * eta / quarter)).exp();
+    let mut nomes = [dual_quarter, eta];
+    for (nome, is_asked) in nomes.iter_mut().zip([!is_circle, true]) {
+        *nome = if is_asked { (-(pi * *nome / quarter)).exponential() } else { zero };
+    }
+    let [mut q, h] = nomes;
+    for n in 0..S::COUNT {
+        q.set(n, if parameter.get(n) == Dd::ZERO { Dd::ZERO } else { q.get(n) });
+    }
     let (s2, c2) = (x0 * 2.0).sin_cos();
     let powers = Powers::of(q);
     let g = q / h;
 
     // Z = 1 + Σ (−1)ⁿ [(q^{2n²−n} hⁿ + q^{2n²} gⁿ) cos 2nx − iδ (… − …) sin 2nx],
     // W = √h Σ (−1)ⁿ [(q^{2n²+n} hⁿ + q^{2n²+2n} gⁿ⁺¹) sin (2n+1)x + iδ (… − …) cos (2n+1)x]
-    let mut sums = Sums {
-        z_even: [Dd::ZERO; DD_TERMS],
-        z_odd: [Dd::ZERO; DD_TERMS],
-        w_even: [Dd::ZERO; DD_TERMS],
-        w_odd: [Dd::ZERO; DD_TERMS],
-    };
-    sums.z_even[0] = Dd::ONE;
+    let (mut z_even, mut z_odd) = ([zero; DD_TERMS], [zero; DD_TERMS]);
+    let (mut w_even, mut w_odd) = ([zero; DD_TERMS], [zero; DD_TERMS]);
+    z_even[0] = one;
     let root = h.sqrt();
-    let (mut zh, mut zg, mut wh, mut wg) = (Dd::ONE, Dd::ONE, root, root * g);
+    let (mut zh, mut zg, mut wh, mut wg) = (one, one, root, root * g);
     let q4 = (q * q) * (q * q);
-    let mut q4n = Dd::ONE; // q^{4n}
+    let mut q4n = one; // q^{4n}
     for n in 0..DD_TERMS {
         let sign = if n % 2 == 0 { 1.0 } else { -1.0 };
         if n > 0 {
@@ -61,20 +108,23 @@ pub(super) fn series(polhode: &Polhode<Dd>) -> Series {
             zg = zg * before * q * g;
             wh = wh * before * q * q * h;
             wg = wg * q4n * g;
-            sums.z_even[n] = (zh + zg) * sign;
-            sums.z_odd[n] = (zh - zg) * sign;
+            z_even[n] = (zh + zg) * sign;
+            z_odd[n] = (zh - zg) * sign;
         }
-        sums.w_even[n] = (wh + wg) * sign;
-        sums.w_odd[n] = (wh - wg) * sign;
+        w_even[n] = (wh + wg) * sign;
+        w_odd[n] = (wh - wg) * sign;
     }
-    let z0 = total(&sums.z_even);
-    let slope = (1..DD_TERMS).fold(Dd::ZERO, |sum, n| sum + sums.z_odd[n] * (2.0 * n as f64));
-    let x_rate = polhode.rate * per_phase;
-    let twist_rate = rate_at_zero(polhode) * 0.5 + delta * x_rate * slope / z0;
+    let z0 = total(&z_even);
+    let mut slope = zero;
+    for (n, odd) in z_odd.iter().enumerate().skip(1) {
+        slope = slope + *odd * (2.0 * n as f64);
+    }
+    let x_rate = rate * per_phase;
+    let twist_rate = at_zero * 0.5 + delta * x_rate * slope / z0;
 
     // θ constants of nome q
-    let (mut t2, mut t3, mut t4) = (Dd::of(2.0), Dd::ONE, Dd::ONE);
-    let mut square = Dd::ONE; // q^{n²}
+    let (mut t2, mut t3, mut t4) = (S::of(2.0), one, one);
+    let mut square = one; // q^{n²}
     for n in 1..=7_u32 {
         square = square * powers.power(2 * n - 1);
         t3 = t3 + square * 2.0;
@@ -82,28 +132,43 @@ pub(super) fn series(polhode: &Polhode<Dd>) -> Series {
         t2 = t2 + square * powers.power(n) * 2.0;
     }
     let kappa = norm * z0 * z0 * 2.0 / ((norm + amp_a) * t4);
-    let flip = flip(polhode);
-    let z = [polynomial(first(&sums.z_even), T), polynomial(first(&sums.z_odd).map(|v| -(v * delta)), U)];
-    let w = [
-        polynomial(first(&sums.w_even).map(|v| v * flip), V_PLUS),
-        polynomial(first(&sums.w_odd).map(|v| v * (flip * delta)), V_MINUS),
-    ];
-    let least = if polhode.about_smallest {
-        let scale = polhode.sigma * amp_a * t4 / t3 * kappa;
-        let term = |n: u32| powers.power(n * n) * scale * if n == 0 { 1.0 } else { 2.0 };
-        polynomial([0, 1, 2, 3, 4].map(term), T)
-    } else {
-        let scale = flip * amp_c * t4 / t2 * kappa * 2.0;
-        polynomial([0, 1, 2, 3, 4].map(|n: u32| powers.power(n * n + n) * scale), V_MINUS)
-    };
+    let mut sums = [first(&z_even), first(&z_odd), first(&w_even), first(&w_odd)];
+    for n in 0..TERMS {
+        sums[1][n] = -(sums[1][n] * delta);
+        sums[2][n] = sums[2][n] * flip;
+        sums[3][n] = sums[3][n] * (flip * delta);
+    }
+    for (sum, family) in sums.iter_mut().zip([T, U, V_PLUS, V_MINUS]) {
+        *sum = coefficients(*sum, family);
+    }
+    let mut least = [zero; LEAST_TERMS];
+    for mode in [true, false] {
+        if !about_smallest.contains(&mode) {
+            continue;
+        }
+        let scale = if mode { sigma * amp_a * t4 / t3 * kappa } else { flip * amp_c * t4 / t2 * kappa * 2.0 };
+        let mut terms = [zero; LEAST_TERMS];
+        for (n, term) in (0..).zip(&mut terms) {
+            *term = powers.power(n * n + if mode { 0 } else { n }) * scale;
+            if mode && n > 0 {
+                *term = *term * 2.0;
+            }
+        }
+        let terms = coefficients(terms, if mode { T } else { V_MINUS });
+        for (n, about_smallest) in about_smallest.iter().enumerate() {
+            for (least, term) in least.iter_mut().zip(&terms) {
+                least.set(n, if *about_smallest == mode { term.get(n) } else { least.get(n) });
+            }
+        }
+    }
 
-    let (mut s, mut c) = (Dd::ZERO, Dd::ONE);
-    let (mut re, mut im) = (Dd::ZERO, Dd::ZERO);
+    let (mut s, mut c) = (zero, one);
+    let (mut re, mut im) = (zero, zero);
     for n in 0..DD_TERMS {
-        re = re + sums.z_even[n] * c;
-        im = im - delta * sums.z_odd[n] * s;
+        re = re + z_even[n] * c;
+        im = im - delta * z_odd[n] * s;
         (s, c) = (s * c2 + c * s2, c * c2 - s * s2);
     }
-    let phase = Phase::new(x_rate / Dd::TAU, x0 / Dd::TAU);
-    Series { form: Form::Direct, phase, twist_rate, z, w, least, start: (re, im) }
+    let tau = S::from_dd(Dd::TAU);
+    Made { phase: [x_rate / tau, x0 / tau], twist_rate, sums, least, start: (re, im) }
 }

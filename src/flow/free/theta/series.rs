@@ -2,7 +2,7 @@
 
 use crate::flow::free::phase::{Pair, Phase};
 use crate::flow::free::polhode::Polhode;
-use crate::num::Dd;
+use crate::num::{Dd, Doubled, Real};
 
 /// Terms of Z and W: the first left out are below 3e-20 of the sums.
 pub(super) const TERMS: usize = 4;
@@ -67,8 +67,14 @@ pub(in crate::flow) const V_PLUS: Family = [1.0, 1.0, 2.0];
 pub(in crate::flow) const V_MINUS: Family = [1.0, -1.0, 2.0];
 
 /// Coefficients of powers of X in Σ v_n F_n(X), rounded once.
-pub(in crate::flow) fn polynomial<const N: usize>(v: [Dd; N], [c, a, b]: Family) -> [f64; N] {
-    let mut sum = [Dd::ZERO; N];
+pub(in crate::flow) fn polynomial<const N: usize>(v: [Dd; N], family: Family) -> [f64; N] {
+    coefficients(v, family).map(Dd::hi)
+}
+
+/// The same before they are rounded.
+#[inline(always)]
+pub(super) fn coefficients<S: Doubled, const N: usize>(v: [S; N], [c, a, b]: Family) -> [S; N] {
+    let mut sum = [S::of(0.0); N];
     let (mut before, mut now) = ([0.0; N], [0.0; N]);
     before[0] = c;
     now[0] = a;
@@ -86,7 +92,7 @@ pub(in crate::flow) fn polynomial<const N: usize>(v: [Dd; N], [c, a, b]: Family)
         }
         (before, now) = (now, next);
     }
-    sum.map(Dd::hi)
+    sum
 }
 
 /// The cubic at `x`.
@@ -102,23 +108,29 @@ pub(in crate::flow) fn least_value(p: &[f64; LEAST_TERMS], x: f64) -> f64 {
     (p[0] + p[1] * x) + x2 * ((p[2] + p[3] * x) + x2 * p[4])
 }
 
-pub(super) fn first(v: &[Dd; DD_TERMS]) -> [Dd; TERMS] {
+pub(super) fn first<S: Copy>(v: &[S; DD_TERMS]) -> [S; TERMS] {
     [v[0], v[1], v[2], v[3]]
 }
 
-pub(super) fn total(v: &[Dd; DD_TERMS]) -> Dd {
-    v.iter().rev().fold(Dd::ZERO, |sum, &x| sum + x)
+#[inline(always)]
+pub(super) fn total<S: Real>(v: &[S; DD_TERMS]) -> S {
+    let mut sum = S::of(0.0);
+    for x in v.iter().rev() {
+        sum = sum + *x;
+    }
+    sum
 }
 
 /// Powers of one number below the 32nd, from its squares.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::flow) struct Powers {
+pub(in crate::flow) struct Powers<S> {
     /// x, x², x⁴ and so on.
-    squares: [Dd; 5],
+    squares: [S; 5],
 }
 
-impl Powers {
-    pub(in crate::flow) fn of(x: Dd) -> Self {
+impl<S: Real> Powers<S> {
+    #[inline(always)]
+    pub(in crate::flow) fn of(x: S) -> Self {
         let mut squares = [x; 5];
         for n in 1..squares.len() {
             squares[n] = squares[n - 1] * squares[n - 1];
@@ -126,9 +138,15 @@ impl Powers {
         Powers { squares }
     }
 
-    pub(in crate::flow) fn power(&self, n: u32) -> Dd {
-        let used =
-            self.squares.iter().enumerate().filter(|(k, _)| n >> k & 1 == 1).map(|(_, square)| *square);
-        used.reduce(|product, square| product * square).unwrap_or(Dd::ONE)
+    #[inline(always)]
+    pub(in crate::flow) fn power(&self, n: u32) -> S {
+        let (mut product, mut is_first) = (S::of(1.0), true);
+        for (k, square) in self.squares.iter().enumerate() {
+            if n >> k & 1 == 1 {
+                product = if is_first { *square } else { product * *square };
+                is_first = false;
+            }
+        }
+        product
     }
 }
