@@ -328,6 +328,15 @@ fn exact_motion_has_the_bits_of_each_member_alone() {
             assert_eq!(bits(&[vec![alone]]), bits(&[vec![*state]]), "member {k} at {t} s");
         }
     }
+    // whichever are prepared together
+    for size in [1, 7, 16, 17] {
+        let mut together = vec![Vec::new(); times.len()];
+        for first in (0..60).step_by(size) {
+            let some = moved(&members(first..60.min(first + size)), &times);
+            together.iter_mut().zip(some).for_each(|(all, some)| all.extend(some));
+        }
+        assert_eq!(bits(&found), bits(&together), "{size} together");
+    }
 }
 
 #[test]

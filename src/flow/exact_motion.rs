@@ -93,6 +93,21 @@ impl ExactMotion {
         }
     }
 
+    /// [From points](Self::from_point) of several bodies: each has the bits that it has alone, and free ones are worked out side by
+    /// side.
+    pub(crate) fn from_points(starts: &[(Body, Point<Dd>)]) -> Vec<Result<Self, NoClosedForm>> {
+        let is_free = |body: &Body| body.wheels().is_empty() && body.problem() == Problem::Free;
+        let free = starts.iter().filter(|(body, _)| is_free(body));
+        let free: Vec<_> = free.map(|(body, start)| (body.inertia(), *start)).collect();
+        let mut free = FreeMotion::from_points(&free).into_iter();
+        let motion = |(body, start): &(Body, Point<Dd>)| {
+            let side_by_side = if is_free(body) { free.next() } else { None };
+            side_by_side
+                .map_or_else(|| Self::from_point(body, *start), |motion| Ok(Self::Free(Box::new(motion))))
+        };
+        starts.iter().map(motion).collect()
+    }
+
     /// The state at the time `t` (s, of either sign), body axes.
     ///
     /// # Errors

@@ -69,10 +69,22 @@ impl FreeMotion {
         Self::of(Body::free(inertia.clone()), start)
     }
 
+    /// [From points](Self::from_point) of several bodies: each has the bits that it has alone, and they are worked out side by side.
+    pub(crate) fn from_points(starts: &[(&Inertia, Point<Dd>)]) -> Vec<Self> {
+        let bodies: Vec<Body> = starts.iter().map(|&(inertia, _)| Body::free(inertia.clone())).collect();
+        let moments = bodies.iter().map(|body| -> Vec3<Dd> { body.rotor().moments() });
+        let orbits = FreeOrbit::of_each(moments.zip(starts).map(|(moments, &(_, start))| (moments, start)));
+        bodies.into_iter().zip(orbits).map(|(body, orbit)| Self::along(body, orbit)).collect()
+    }
+
     /// Of a `body` on which nothing acts.
     fn of(body: Body, start: Point<Dd>) -> Self {
+        let orbit = FreeOrbit::new(body.rotor().moments(), start);
+        Self::along(body, orbit)
+    }
+
+    fn along(body: Body, orbit: FreeOrbit) -> Self {
         let moments: Vec3<Dd> = body.rotor().moments();
-        let orbit = FreeOrbit::new(moments, start);
         // no part of the phase runs faster than G/I_l
         let reach = MOST_RADIANS * (moments[moments.ascending()[0]] / orbit.momentum_norm()).to_f64();
         FreeMotion { body, orbit, reach, derivative: OnceLock::new() }

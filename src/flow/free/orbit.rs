@@ -49,26 +49,68 @@ impl Circulating {
     }
 }
 
-/// Fewer times than these are taken one by one.
-const FEW: usize = 8;
+/// What is known of an orbit before its theta functions.
+struct Path {
+    moments: Vec3<Dd>,
+    start: Point<Dd>,
+    norm: Dd,
+    /// Where the momentum moves in the body.
+    polhode: Option<Polhode<Dd>>,
+}
 
-impl FreeOrbit {
-    /// Of a body with the principal `moments`, from `start` at t = 0.
-    pub(crate) fn new(moments: Vec3<Dd>, start: Point<Dd>) -> Self {
+impl Path {
+    fn of(moments: Vec3<Dd>, start: Point<Dd>) -> Self {
         let momentum = start.momentum_body;
         let norm = momentum.norm();
+        let polhode = if norm == Dd::ZERO {
+            None
+        } else {
+            Polhode::of(moments, momentum, norm, exact_separation(moments, momentum))
+        };
+        Path { moments, start, norm, polhode }
+    }
+
+    /// With the theta functions of its polhode.
+    fn orbit(self, quick: Option<Theta>) -> FreeOrbit {
+        let Path { moments, start, norm, polhode } = self;
+        let momentum = start.momentum_body;
         let kind = if norm == Dd::ZERO {
             Kind::Rest
-        } else if let Some(polhode) =
-            Polhode::of(moments, momentum, norm, exact_separation(moments, momentum))
-        {
-            let quick = Theta::of(&polhode, start.attitude, momentum);
+        } else if let Some((polhode, quick)) = polhode.zip(quick) {
             Kind::Circulating(Box::new(Circulating { polhode, momentum, quick, precise: OnceLock::new() }))
         } else {
             let (axis, rate) = steady(moments, momentum, norm);
             Kind::Steady(Box::new(Spin::new(axis, rate)))
         };
         FreeOrbit { moments, start, norm, kind }
+    }
+}
+
+/// Fewer times than these are taken one by one.
+const FEW: usize = 8;
+
+impl FreeOrbit {
+    /// Of a body with the principal `moments`, from `start` at t = 0.
+    pub(crate) fn new(moments: Vec3<Dd>, start: Point<Dd>) -> Self {
+        let path = Path::of(moments, start);
+        let quick =
+            path.polhode.as_ref().map(|polhode| Theta::of(polhode, start.attitude, start.momentum_body));
+        path.orbit(quick)
+    }
+
+    /// The same of each of `bodies`, with the bits that it has alone.
+    pub(crate) fn of_each(bodies: impl IntoIterator<Item = (Vec3<Dd>, Point<Dd>)>) -> Vec<Self> {
+        let paths: Vec<Path> = bodies.into_iter().map(|(moments, start)| Path::of(moments, start)).collect();
+        let circulating = paths.iter().filter_map(|path| Some((path, path.polhode.as_ref()?)));
+        let motions: Vec<_> = circulating
+            .map(|(path, polhode)| (polhode, path.start.attitude, path.start.momentum_body))
+            .collect();
+        let mut quick = Theta::of_each(&motions).into_iter();
+        let orbit = |path: Path| {
+            let quick = path.polhode.as_ref().and_then(|_| quick.next());
+            path.orbit(quick)
+        };
+        paths.into_iter().map(orbit).collect()
     }
 
     /// The point at the time `t` (s).
@@ -191,6 +233,63 @@ impl FreeOrbit {
         match &self.kind {
             Kind::Circulating(orbit) => orbit.precise().flips(t),
             Kind::Rest | Kind::Steady(_) => 0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::num::Real as _;
+
+    /// Orbits of every kind, most of them in the form that is worked out side by side, of both modes.
+    fn bodies() -> Vec<(Vec3<Dd>, Point<Dd>)> {
+        let mut bodies = Vec::new();
+        for k in 0..120_u32 {
+            let part = |ratio: f64| (f64::from(k) * ratio).fract();
+            let (a, b, c) =
+                (part(0.618_033_988_749_895), part(0.754_877_666_246_693), part(0.569_840_290_998_053));
+            let moments = match k % 11 {
+                3 => [1.0, 1.0, 1.4 + a],
+                5 => [1.0; 3],
+                7 => [1.0, 1.0 + 1e-15 * (1.0 + a), 1.5],
+                _ => [1.0, 1.2 + 0.7 * a, 1.9 + 0.2 * b],
+            };
+            let momentum = match k % 13 {
+                2 => [0.0, 0.0, 2.0 * a - 1.0],
+                4 => [1e-9 * a, 1.0, -1e-7 * b],
+                6 => [1e-280 * a, 1.0, 1e-270],
+                9 => [0.0; 3],
+                11 => [a * 1e90, c * 1e90, -b * 1e90],
+                _ => [2.0 * a - 1.0, 1.2 * b - 0.6, 2.0 * c - 1.0],
+            };
+            let attitude = Quat::new(Dd::of(b), Vec3([a, -b, c].map(Dd::of))).normalized();
+            let attitude = if k == 0 { Quat::identity() } else { attitude };
+            bodies.push((Vec3(moments.map(Dd::of)), Point::new(attitude, Vec3(momentum.map(Dd::of)))));
+        }
+        // on the separatrix
+        let momentum = Vec3([1.0, 0.5, 1.0].map(Dd::of));
+        bodies.insert(20, (Vec3([0.75, 1.0, 1.5].map(Dd::of)), Point::new(Quat::identity(), momentum)));
+        bodies
+    }
+
+    /// Every number of an orbit is the same alone and among others, however many these are.
+    #[test]
+    fn an_orbit_among_others_has_the_bits_of_one_alone() {
+        let bodies = bodies();
+        let alone: Vec<String> =
+            bodies.iter().map(|&(moments, start)| format!("{:?}", FreeOrbit::new(moments, start))).collect();
+        for together in [1, 2, 15, 16, 17, bodies.len()] {
+            let orbits = bodies.chunks(together).flat_map(|group| FreeOrbit::of_each(group.iter().copied()));
+            for (n, (orbit, alone)) in orbits.zip(&alone).enumerate() {
+                assert_eq!(&format!("{orbit:?}"), alone, "body {n} of {together} together");
+            }
+        }
+        // there are some of every kind
+        let kinds = ["Direct", "Dual", "Limit", "Separatrix", "Steady", "Rest"];
+        for (kind, least) in kinds.into_iter().zip([50, 3, 1, 1, 10, 5]) {
+            let count = alone.iter().filter(|orbit| orbit.contains(kind)).count();
+            assert!(count >= least, "{kind}: {count}");
         }
     }
 }

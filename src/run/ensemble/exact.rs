@@ -3,8 +3,8 @@
 use core::ops::Range;
 
 use super::rows::Reading;
-use super::{Ensemble, MemberError, Rows};
-use crate::body::{Clock, Phase, Point};
+use super::{Ensemble, Rows};
+use crate::body::{Body, Clock, Phase, Point};
 use crate::flow::{ExactMotion, NoClosedForm, TimeError};
 use crate::num::{Dd, LANES};
 use crate::observe::Monitor;
@@ -13,30 +13,59 @@ use crate::observe::Monitor;
 /// the first cache.
 const TOGETHER: usize = 8;
 
+/// Members that are prepared together: as many as are worked out side by side.
+pub(super) const PREPARED: usize = 16;
+
 /// Of the members `part` at `times`, which are finite.
 pub(super) fn rows(ensemble: &Ensemble, part: Range<usize>, times: &[f64]) -> Rows {
     let mut rows = Rows::new(part.start, part.len(), times.len(), ensemble.observed);
     let first = part.start;
-    for group in part.clone().step_by(TOGETHER) {
-        let mut followed = Vec::with_capacity(TOGETHER);
-        for k in group..part.end.min(group + TOGETHER) {
-            match Followed::new(ensemble, k, k - first, times) {
-                Ok(member) => followed.push(member),
-                Err(error) => rows.fail(k - first, 0, error),
+    for group in part.clone().step_by(PREPARED) {
+        let mut prepared = prepared(ensemble, group..part.end.min(group + PREPARED), first, times, &mut rows);
+        for followed in prepared.chunks_mut(TOGETHER) {
+            for (block, times) in times.chunks(LANES).enumerate() {
+                for member in &mut *followed {
+                    member.fill(ensemble, block * LANES, times, &mut rows);
+                }
             }
         }
-        for (block, times) in times.chunks(LANES).enumerate() {
-            for member in &mut followed {
-                member.fill(ensemble, block * LANES, times, &mut rows);
-            }
-        }
-        for member in followed {
+        for member in prepared {
             if let Some((time, error)) = member.failure {
                 rows.fail(member.number, time, error.into());
             }
         }
     }
     rows.sorted()
+}
+
+/// The members `group` of a part that begins with `first`; those that cannot start fail.
+fn prepared(
+    ensemble: &Ensemble,
+    group: Range<usize>,
+    first: usize,
+    times: &[f64],
+    rows: &mut Rows,
+) -> Vec<Followed> {
+    let (mut numbers, mut starts) = (Vec::with_capacity(PREPARED), Vec::with_capacity(PREPARED));
+    for k in group {
+        match ensemble.member(k, 0.0) {
+            Ok(start) => {
+                numbers.push(k - first);
+                starts.push(start);
+            }
+            Err(error) => rows.fail(k - first, 0, error),
+        }
+    }
+    let mut followed = Vec::with_capacity(PREPARED);
+    let motions = ExactMotion::from_points(&starts);
+    for ((number, (body, start)), motion) in numbers.into_iter().zip(&starts).zip(motions) {
+        match motion {
+            Ok(motion) => followed.push(Followed::new(ensemble, body, start, number, motion, times)),
+            Err(NoClosedForm::State(error)) => rows.fail(number, 0, error.into()),
+            Err(error) => rows.fail(number, 0, error.into()),
+        }
+    }
+    followed
 }
 
 /// A member on its way through the times.
@@ -51,16 +80,18 @@ struct Followed {
 }
 
 impl Followed {
-    fn new(ensemble: &Ensemble, k: usize, number: usize, times: &[f64]) -> Result<Self, MemberError> {
-        let (body, start) = ensemble.member(k, 0.0)?;
-        let motion = ExactMotion::from_point(&body, start).map_err(|error| match error {
-            NoClosedForm::State(error) => MemberError::from(error),
-            error => error.into(),
-        })?;
+    fn new(
+        ensemble: &Ensemble,
+        body: &Body,
+        start: &Point<Dd>,
+        number: usize,
+        motion: ExactMotion,
+        times: &[f64],
+    ) -> Self {
         let observed = ensemble.observed.invariants;
-        let monitor = observed.then(|| Box::new(Monitor::new(&body, Clock::new(1.0), &start.to_f64())));
+        let monitor = observed.then(|| Box::new(Monitor::new(body, Clock::new(1.0), &start.to_f64())));
         let failure = times.iter().enumerate().find_map(|(n, &t)| Some((n, motion.check_time(t).err()?)));
-        Ok(Followed { number, motion, reading: Reading::of(&body), monitor, failure })
+        Followed { number, motion, reading: Reading::of(body), monitor, failure }
     }
 
     /// Writes the rows at `times`, before which there are `before`.

@@ -2,6 +2,7 @@
 
 use core::ops::Range;
 
+use super::exact::PREPARED;
 use super::rows::Reading;
 use super::{Ensemble, MemberError, Rows};
 use crate::body::{Body, Clock, Point};
@@ -39,11 +40,15 @@ impl Course<'_> {
     /// Rows of the members `part`.
     pub(super) fn rows(&self, part: Range<usize>) -> Rows {
         let mut rows = Rows::new(part.start, part.len(), self.steps.len(), self.ensemble.observed);
-        let mut members = Vec::new();
+        let (mut members, mut starts) = (Vec::new(), Vec::new());
         for (number, k) in part.enumerate() {
             let outcome = match self.enter(number, k) {
-                Ok(Entered::Lane(member)) => {
-                    members.push(*member);
+                Ok(Entered::Lane(entered)) => {
+                    let (member, start) = *entered;
+                    members.push(member);
+                    if self.ensemble.observed.attitude {
+                        starts.push(start);
+                    }
                     Ok(())
                 }
                 Ok(Entered::Alone(member)) => self.alone(number, &member.0, member.1, &mut rows),
@@ -52,6 +57,10 @@ impl Course<'_> {
             if let Err((time, error)) = outcome {
                 rows.fail(number, time, error);
             }
+        }
+        let motions = starts.chunks(PREPARED).flat_map(ExactMotion::from_points);
+        for (member, exact) in members.iter_mut().zip(motions) {
+            member.observer.exact = exact.ok().map(Box::new);
         }
         // those of one kind behind each other, in their order
         let mut kinds: Vec<Vec<Member>> = Vec::new();
@@ -80,7 +89,8 @@ impl Course<'_> {
         Ok(match step.side_by_side().and_then(|steps| steps.of(&body)) {
             Some(side_by_side) => {
                 let observer = Observer::new(self, &body, start);
-                Entered::Lane(Box::new(Member { number, step, point, side_by_side, observer }))
+                let member = Member { number, step, point, side_by_side, observer };
+                Entered::Lane(Box::new((member, (body, start))))
             }
             None => Entered::Alone(Box::new((body, start))),
         })
@@ -126,7 +136,10 @@ impl Course<'_> {
     ) -> Result<(), (usize, MemberError)> {
         let run = Run::from_point(self.method, body, start.to_f64(), self.clock);
         let mut run = run.map_err(|error| (0, error.into()))?.watching(Watch::Never);
-        let observer = Observer::new(self, body, start);
+        let mut observer = Observer::new(self, body, start);
+        if self.ensemble.observed.attitude {
+            observer.exact = ExactMotion::from_point(body, start).ok().map(Box::new);
+        }
         for (time, &steps) in self.steps.iter().enumerate() {
             let sample = run.advance_to(steps).map_err(|error| (time, error.into()))?;
             if !observer.see(self, number, time, &sample.point, rows) {
@@ -139,7 +152,7 @@ impl Course<'_> {
 
 /// How a member goes on.
 enum Entered {
-    Lane(Box<Member>),
+    Lane(Box<(Member, (Body, Point<Dd>))>),
     Alone(Box<(Body, Point<Dd>)>),
 }
 
@@ -151,12 +164,12 @@ struct Observer {
 }
 
 impl Observer {
+    /// Without the exact motion.
     fn new(course: &Course<'_>, body: &Body, start: Point<Dd>) -> Self {
         let observed = course.ensemble.observed;
         let monitor =
             observed.invariants.then(|| Box::new(Monitor::new(body, course.clock, &start.to_f64())));
-        let exact = observed.attitude.then(|| ExactMotion::from_point(body, start).ok().map(Box::new));
-        Observer { reading: Reading::of(body), monitor, exact: exact.flatten() }
+        Observer { reading: Reading::of(body), monitor, exact: None }
     }
 
     /// Writes a row; whether all of it is finite, as a [`Run`] asks of a sample.

@@ -1,5 +1,7 @@
 //! The direct form: trigonometric sums with the nome q.
 
+use multiversion::multiversion;
+
 use super::series::{
     DD_TERMS, Form, LEAST_TERMS, Powers, Series, T, TERMS, U, V_MINUS, V_PLUS, coefficients, first, flip,
     rate_at_zero, total,
@@ -7,7 +9,13 @@ use super::series::{
 use crate::flow::free::phase::Phase;
 use crate::flow::free::polhode::Polhode;
 use crate::num::elliptic::{each_r_f, quarter_period};
-use crate::num::{Dd, Doubled, Several};
+use crate::num::{Dd, DdLanes, Doubled, Several};
+
+/// Motions whose series are made side by side: a double-double operation is a chain in which each part waits for the one before.
+const TOGETHER: usize = 16;
+
+/// A number of each of them.
+type Lanes = DdLanes<TOGETHER>;
 
 /// What the series of a polhode are made of.
 const GIVEN: usize = 13;
@@ -51,6 +59,32 @@ impl<S: Several> Made<S> {
 
 pub(super) fn series(polhode: &Polhode<Dd>) -> Series {
     made(&given(polhode), &[polhode.about_smallest]).series(0)
+}
+
+/// The series of each of `polhodes`, with the bits that it has alone.
+pub(super) fn series_of_each(polhodes: &[&Polhode<Dd>]) -> Vec<Series> {
+    let mut all = Vec::with_capacity(polhodes.len());
+    for group in polhodes.chunks(TOGETHER) {
+        let [first, _, ..] = group else {
+            all.extend(group.iter().map(|polhode| series(polhode)));
+            continue;
+        };
+        // lanes without a motion are those of the first
+        let mut numbers = given(first).map(Lanes::all);
+        let mut about_smallest = [first.about_smallest; TOGETHER];
+        for (n, polhode) in group.iter().enumerate().skip(1) {
+            numbers.iter_mut().zip(given(polhode)).for_each(|(lanes, x)| lanes.set(n, x));
+            about_smallest[n] = polhode.about_smallest;
+        }
+        let made = side_by_side(&numbers, &about_smallest);
+        all.extend((0..group.len()).map(|n| made.series(n)));
+    }
+    all
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
+fn side_by_side(numbers: &[Lanes; GIVEN], about_smallest: &[bool; TOGETHER]) -> Made<Lanes> {
+    made(numbers, about_smallest)
 }
 
 #[inline(always)]

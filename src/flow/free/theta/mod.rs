@@ -28,7 +28,7 @@ pub(super) use self::lanes::Points;
 pub(in crate::flow) use self::series::{
     Family, LEAST_TERMS, Powers, T, U, V_MINUS, V_PLUS, least_value, polynomial,
 };
-use self::series::{Form, TERMS, value};
+use self::series::{Form, Series, TERMS, value};
 use super::phase::{Pair, Phase, TOO_FAR};
 use super::polhode::Polhode;
 use crate::num::error_free::{two_prod, two_sum};
@@ -61,8 +61,23 @@ pub(super) struct Theta {
 impl Theta {
     /// For the attitude `q0` and the momentum `m` at the start.
     pub(super) fn of(polhode: &Polhode<Dd>, q0: Quat<Dd>, m: Vec3<Dd>) -> Self {
-        let series =
-            if polhode.complement.hi() >= SWITCH { direct::series(polhode) } else { dual::series(polhode) };
+        let series = if is_direct(polhode) { direct::series(polhode) } else { dual::series(polhode) };
+        Self::of_series(polhode, q0, m, &series)
+    }
+
+    /// The same of each of `motions`, with the bits that it has alone: direct forms are worked out side by side.
+    pub(super) fn of_each(motions: &[(&Polhode<Dd>, Quat<Dd>, Vec3<Dd>)]) -> Vec<Self> {
+        let all = motions.iter().map(|&(polhode, ..)| polhode);
+        let direct: Vec<_> = all.filter(|polhode| is_direct(polhode)).collect();
+        let mut direct = direct::series_of_each(&direct).into_iter();
+        let of = |&(polhode, q0, m): &(&Polhode<Dd>, Quat<Dd>, Vec3<Dd>)| {
+            let series = if is_direct(polhode) { direct.next() } else { None };
+            Self::of_series(polhode, q0, m, &series.unwrap_or_else(|| dual::series(polhode)))
+        };
+        motions.iter().map(of).collect()
+    }
+
+    fn of_series(polhode: &Polhode<Dd>, q0: Quat<Dd>, m: Vec3<Dd>, series: &Series) -> Self {
         // Z at the start gives the twist of P(0); its swing is that of m
         let (re, im) = series.start;
         let size = (re * re + im * im).sqrt();
@@ -211,6 +226,10 @@ impl Theta {
         ];
         (turn, momentum)
     }
+}
+
+fn is_direct(polhode: &Polhode<Dd>) -> bool {
+    polhode.complement.hi() >= SWITCH
 }
 
 /// Z, W and the theta quotient along the smallest moment times n₂.
