@@ -157,6 +157,15 @@ fn advance(ensemble: &Ensemble, name: &str, steps: u64) {
     done.expect("a step that is usable");
 }
 
+/// The exact motion at one time.
+fn moved(ensemble: &Ensemble) {
+    let done = ensemble.at(&[1.0], |rows| {
+        black_box(rows.states(0));
+        Ok::<(), EnsembleError>(())
+    });
+    done.expect("a finite time");
+}
+
 /// Least time of `job`, s, over some bursts that take turns with those of the others.
 fn least<const N: usize>(mut jobs: [&mut dyn FnMut(); N], bursts: usize) -> [f64; N] {
     let mut least = [f64::INFINITY; N];
@@ -276,6 +285,11 @@ fn main() -> ExitCode {
             judge(steps * 1e3, known)
         );
     }
+    // what is not the widest is prepared one by one
+    let single = members(SET_UP).by(Instructions::Avx2);
+    let [together, alone] = least([&mut || moved(&some), &mut || moved(&single)], 10 * BURSTS);
+    let each = |total: f64| 1e6 * total / SET_UP as f64;
+    println!("exact motion     {:.2}, one by one {:.2}", each(together), each(alone));
 
     let inertia = Inertia::from_moments([1.0, 2.0, 3.0]).expect("valid moments");
     for (what, omega) in

@@ -6,7 +6,7 @@ use super::rows::Reading;
 use super::{Ensemble, Rows};
 use crate::body::{Body, Clock, Phase, Point};
 use crate::flow::{ExactMotion, NoClosedForm, TimeError};
-use crate::num::{Dd, LANES};
+use crate::num::{Dd, Instructions, LANES};
 use crate::observe::Monitor;
 
 /// Members that are followed together through a block of times, so that neighbours in the rows are written while they are in
@@ -14,7 +14,7 @@ use crate::observe::Monitor;
 const TOGETHER: usize = 8;
 
 /// Members that are prepared together: as many as are worked out side by side.
-pub(super) const PREPARED: usize = 16;
+const PREPARED: usize = 16;
 
 /// Of the members `part` at `times`, which are finite.
 pub(super) fn rows(ensemble: &Ensemble, part: Range<usize>, times: &[f64]) -> Rows {
@@ -57,8 +57,8 @@ fn prepared(
         }
     }
     let mut followed = Vec::with_capacity(PREPARED);
-    let motions = ExactMotion::from_points(&starts);
-    for ((number, (body, start)), motion) in numbers.into_iter().zip(&starts).zip(motions) {
+    let prepared = numbers.into_iter().zip(&starts).zip(motions(ensemble, &starts));
+    for ((number, (body, start)), motion) in prepared {
         match motion {
             Ok(motion) => followed.push(Followed::new(ensemble, body, start, number, motion, times)),
             Err(NoClosedForm::State(error)) => rows.fail(number, 0, error.into()),
@@ -66,6 +66,15 @@ fn prepared(
         }
     }
     followed
+}
+
+/// The motions from `starts`: side by side by the widest instructions, one by one by narrower ones.
+pub(super) fn motions(
+    ensemble: &Ensemble,
+    starts: &[(Body, Point<Dd>)],
+) -> impl Iterator<Item = Result<ExactMotion, NoClosedForm>> {
+    let together = if ensemble.instructions == Instructions::Widest { PREPARED } else { 1 };
+    starts.chunks(together).flat_map(ExactMotion::from_points)
 }
 
 /// A member on its way through the times.

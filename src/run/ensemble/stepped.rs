@@ -2,7 +2,7 @@
 
 use core::ops::Range;
 
-use super::exact::PREPARED;
+use super::exact::motions;
 use super::rows::Reading;
 use super::{Ensemble, MemberError, Rows};
 use crate::body::{Body, Clock, Point};
@@ -58,8 +58,7 @@ impl Course<'_> {
                 rows.fail(number, time, error);
             }
         }
-        let motions = starts.chunks(PREPARED).flat_map(ExactMotion::from_points);
-        for (member, exact) in members.iter_mut().zip(motions) {
+        for (member, exact) in members.iter_mut().zip(motions(self.ensemble, &starts)) {
             member.observer.exact = exact.ok().map(Box::new);
         }
         // those of one kind behind each other, in their order
