@@ -8,7 +8,7 @@ use super::{Dd, error_free, trig};
 /// A scalar that explicit kernels are written over.
 ///
 /// There is no ordering: a kernel cannot branch on a value, so one text serves `f64`, [`Dd`], power [series](super::Series)
-/// and, later, several bodies side by side. An iteration ends on [`magnitude`](Real::magnitude), the worst lane as `f64`.
+/// and several numbers side by side. An iteration ends on [`magnitude`](Real::magnitude), the worst lane as `f64`.
 pub trait Real:
     Copy
     + Debug
