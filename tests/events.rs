@@ -404,13 +404,44 @@ fn searches_that_cannot_be_are_refused() {
 #[test]
 fn what_happened_before_a_run_diverged_is_kept() {
     let body = racket();
-    let fast = start(&body, [30.0, 20.0, -10.0]);
-    let mut run = Run::new(&method("explicit-euler").unwrap(), &body, &fast, 1.0).unwrap();
-    let (found, ended) = run.events_so_far(&[Event::rate_above(&body, 100.0).unwrap()], 1000.0, 1.0);
-    let Err(RunError::Diverged { last }) = &ended else { panic!("{ended:?}") };
+    let begin = start(&body, [0.4, 1.0, -0.3]);
+    let mut run = Run::new(&method("explicit-euler").unwrap(), &body, &begin, 0.25).unwrap();
+    let (found, ended) = run.events_so_far(&[Event::zero("t = 1.1 s", |t, _| t - 1.1)], 1e4, 0.25);
+    let diverged = matches!(ended, Err(RunError::Diverged { .. } | RunError::OutOfRange { .. }));
+    assert!(diverged, "{ended:?}");
     assert_eq!(found.found.len(), 1);
-    let rate = body.omega_body(&found.found[0].state).norm();
-    assert!((rate - 100.0).abs() < 1e-9 && found.found[0].time < last.time, "{rate}");
+    assert!((found.found[0].time.hi() - 1.1).abs() < 1e-12);
+}
+
+/// Euler's method stretches the quaternion: what happens behind the last step at which it still is a rotation is left out.
+#[test]
+fn a_search_ends_where_the_numbers_are_no_rotation() {
+    let body = racket();
+    let begin = start(&body, [0.001, 1.0, 0.0]);
+    let run = || Run::new(&method("explicit-euler").unwrap(), &body, &begin, 0.5).unwrap();
+    let mut plain = run();
+    let lost = (1..).find(|steps| plain.advance_to(*steps).unwrap().nonsense().is_some()).unwrap();
+    let last = 0.5 * (lost - 1) as f64;
+    // a quarter of a second past each full one, between two steps
+    let past = Event::zero("a quarter past", |t, _| Real::sin_cos(core::f64::consts::PI * (t - 0.25)).0);
+    let (found, ended) = run().events_so_far(&[past], 20.0, 0.5);
+    let Err(RunError::Nonsense { why }) = &ended else { panic!("{ended:?}") };
+    assert!(why.contains("no longer describe the motion"), "{why}");
+    let before = (0..20).filter(|k| f64::from(*k) + 0.25 < last).count();
+    assert!(before > 2 && found.found.len() == before, "{before} of {found:?}");
+}
+
+/// A closed form keeps what it has found, too.
+#[test]
+fn what_happened_before_a_search_failed_is_kept() {
+    let motion = ExactMotion::new(&racket(), &start(&racket(), [0.4, 1.0, -0.3])).unwrap();
+    let ends = Event::zero("ends", |t, _| if t > 5.0 { f64::NAN } else { 1.0 });
+    let early = Event::zero("t = 1.1 s", |t, _| t - 1.1);
+    let (found, ended) = motion.events_so_far(&[ends, early], 0.0, 10.0, 0.5);
+    assert!(matches!(ended, Err(EventError::NotANumber { time: 5.5, .. })), "{ended:?}");
+    assert!(found.found.len() == 1 && found.found[0].event == 1);
+    let (none, refused) = motion.events_so_far(&[], 0.0, f64::NAN, 0.5);
+    assert!(none.found.is_empty() && matches!(refused, Err(EventError::Time(_))), "{refused:?}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::along::{Rates, Search, intervals};
 use super::{Event, EventError, Events};
 use crate::body::{Body, Point, Time};
-use crate::flow::{ExactMotion, FreeMotion};
+use crate::flow::{ExactMotion, FreeMotion, TimeError};
 use crate::num::Dd;
 
 impl FreeMotion {
@@ -15,8 +15,20 @@ impl FreeMotion {
     /// Times beyond [`reach`](Self::reach), an end before the beginning, a spacing that is not positive or leads to more than
     /// 1e10 looks; a function that is no number, jumps, or changes faster than it was said to.
     pub fn events(&self, events: &[Event], from: f64, to: f64, spacing: f64) -> Result<Events, EventError> {
-        self.check_time(from).and_then(|()| self.check_time(to))?;
-        look(self.body(), events, [from, to, spacing], |t| self.point_after(t))
+        let (found, ended) = self.events_so_far(events, from, to, spacing);
+        ended.map(|()| found)
+    }
+
+    /// As [`events`](Self::events): what happened, also before the error that ended the search, and that error.
+    pub fn events_so_far(
+        &self,
+        events: &[Event],
+        from: f64,
+        to: f64,
+        spacing: f64,
+    ) -> (Events, Result<(), EventError>) {
+        let checked = self.check_time(from).and_then(|()| self.check_time(to));
+        found(self.body(), events, [from, to, spacing], checked, |t| self.point_after(t))
     }
 }
 
@@ -26,30 +38,54 @@ impl ExactMotion {
     /// # Errors
     /// As [`FreeMotion::events`].
     pub fn events(&self, events: &[Event], from: f64, to: f64, spacing: f64) -> Result<Events, EventError> {
-        match self {
-            ExactMotion::Free(motion) => motion.events(events, from, to, spacing),
-            ExactMotion::Lagrange(top) => self.look(top.body(), events, [from, to, spacing]),
-            ExactMotion::Gyrostat(motion) => self.look(motion.body(), events, [from, to, spacing]),
-        }
+        let (found, ended) = self.events_so_far(events, from, to, spacing);
+        ended.map(|()| found)
+    }
+
+    /// As [`FreeMotion::events_so_far`].
+    pub fn events_so_far(
+        &self,
+        events: &[Event],
+        from: f64,
+        to: f64,
+        spacing: f64,
+    ) -> (Events, Result<(), EventError>) {
+        let body = match self {
+            ExactMotion::Free(motion) => motion.body(),
+            ExactMotion::Lagrange(top) => top.body(),
+            ExactMotion::Gyrostat(motion) => motion.body(),
+        };
+        let checked = self.check_time(from).and_then(|()| self.check_time(to));
+        found(body, events, [from, to, spacing], checked, |t| self.point_at(t))
     }
 }
 
-impl ExactMotion {
-    fn look(&self, body: &Body, events: &[Event], span: [f64; 3]) -> Result<Events, EventError> {
-        self.check_time(span[0]).and_then(|()| self.check_time(span[1]))?;
-        look(body, events, span, |t| self.point_at(t))
-    }
-}
-
-fn look(
+/// What happens to the `point` of `body`, where its times are `checked`, and why the search ended early.
+fn found(
     body: &Body,
     events: &[Event],
+    span: [f64; 3],
+    checked: Result<(), TimeError>,
+    point: impl Fn(Dd) -> Point<f64>,
+) -> (Events, Result<(), EventError>) {
+    let mut search = Search::new(events, None);
+    let ended = match checked {
+        Ok(()) => look(&mut search, body, events, span, point),
+        Err(error) => Err(error.into()),
+    };
+    (search.finish(span[2]), ended)
+}
+
+fn look<'a>(
+    search: &mut Search<'a>,
+    body: &Body,
+    events: &'a [Event],
     [from, to, spacing]: [f64; 3],
     point: impl Fn(Dd) -> Point<f64>,
-) -> Result<Events, EventError> {
+) -> Result<(), EventError> {
     let looks = intervals(from, to, spacing)?;
     let start = point(Dd::from(from));
-    let mut search = Search::new(events, Some(rates(body, &start)));
+    *search = Search::new(events, Some(rates(body, &start)));
     let mut states = |t: Dd| Ok::<_, EventError>(body.leave(&point(t)));
     search.begin::<EventError>(Dd::from(from), &body.leave(&start))?;
     for k in 1..=looks {
@@ -60,7 +96,7 @@ fn look(
         let state = states(time)?;
         search.go_on(time, &state, &mut states)?;
     }
-    Ok(search.finish(spacing))
+    Ok(())
 }
 
 /// What a body with the energy of the point `x` turns by and accelerates by at most, without or with uniform gravity or wheels.

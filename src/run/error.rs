@@ -92,6 +92,12 @@ pub enum RunError {
         /// The last step tried.
         stuck: Stuck,
     },
+    /// What happens along the run is found in numbers that no longer are those of a rotation.
+    #[error("{why}")]
+    Nonsense {
+        /// Why they are not, as [`Sample::nonsense`] says it.
+        why: String,
+    },
     /// The equations of an implicit step could not be solved.
     #[error(
         "after {} steps, t = {} s, an implicit step was left with a relative residual of {residual:.1e} (at most {SOLVED:e}): \

@@ -3,7 +3,7 @@
 use super::between::Between;
 use super::schedule::Place;
 use super::{Run, RunError};
-use crate::body::State;
+use crate::body::Point;
 use crate::events::{Event, EventError, Events, Occurrence, Search, intervals};
 use crate::num::Dd;
 
@@ -43,7 +43,7 @@ impl Run {
     ///
     /// # Errors
     /// As [`advance_to`](Self::advance_to); a run that goes backwards; an end that the run has passed; a spacing that is not
-    /// positive; a function that is no number or jumps.
+    /// positive; a function that is no number or jumps; [`RunError::Nonsense`] where something happens that is none of a rotation.
     pub fn events(&mut self, events: &[Event], end: f64, spacing: f64) -> Result<Events, RunError> {
         let (found, ended) = self.events_so_far(events, end, spacing);
         ended.map(|()| found)
@@ -111,28 +111,36 @@ impl Run {
         }
         let before = self.marked();
         self.go_to(next)?;
-        let state = self.body.leave(&self.reading);
-        self.look(search, &mut here, length, Some(state))?;
+        self.look(search, &mut here, length, Some(self.reading))?;
         if search.has_ended() {
             self.go_back(before);
         }
         Ok(())
     }
 
-    /// Looks at the time `later` s behind the step `here`, at the `state` of then, where it is known.
+    /// Looks at the time `later` s behind the step `here`, at the `point` of then, where the run has come to it.
     fn look(
         &mut self,
         search: &mut Search<'_>,
         here: &mut Between,
         later: Dd,
-        state: Option<State>,
+        point: Option<Point<f64>>,
     ) -> Result<(), RunError> {
         let (base, body) = (self.clock.at(here.reading.steps()).dd(), self.body.clone());
-        let state = match state {
-            Some(state) => state,
-            None => body.leave(&here.behind(self, later)?),
+        let (point, since) = match point {
+            Some(point) => (point, Dd::ZERO),
+            None => (here.behind(self, later)?, later),
         };
+        let known = search.found.len();
         let mut states = |t: Dd| here.behind(self, t - base).map(|point| body.leave(&point));
-        search.go_on(base + later, &state, &mut states)
+        let looked = search.go_on(base + later, &body.leave(&point), &mut states);
+        // worked out in double-double, so of what counts alone
+        if search.found.len() > known
+            && let Some(why) = self.sample_of(point, since).nonsense()
+        {
+            search.found.truncate(known);
+            return Err(RunError::Nonsense { why });
+        }
+        looked
     }
 }

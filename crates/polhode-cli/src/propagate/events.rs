@@ -31,11 +31,14 @@ impl Propagate {
         let spacing = self.spacing(body, &start, to - from)?;
         let (found, ended) = if self.method == "exact" {
             let motion = self.exact_motion(body, start)?;
-            let found = motion.events(&events, 0.0, to - from, spacing);
-            (found.map_err(|error| Error::Input(format!("{}: {error}", flag_of(&error))))?, Ok(()))
+            let (found, ended) = motion.events_so_far(&events, 0.0, to - from, spacing);
+            (found, ended.map_err(|error| self.search_ended(error.into())))
         } else {
             self.along_run(body, start, &events, [from, to, spacing])?
         };
+        if found.found.is_empty() && matches!(ended, Err(Error::Input(_))) {
+            return ended;
+        }
         let origin = if self.method == "exact" { from } else { 0.0 };
         self.write_events(body, &columns, &found, Dd::from(origin))?;
         self.tell_of_events(&found);
@@ -80,16 +83,15 @@ impl Propagate {
         let (found, ended) = run.events_so_far(events, to, spacing);
         let ended = match ended.map_err(|error| self.search_ended(error)) {
             Ok(()) => self.check_sense(&run.sample()),
-            Err(error @ Error::Input(_)) if found.found.is_empty() => return Err(error),
             failed => failed,
         };
         Ok((found, ended))
     }
 
-    /// Why a search along a run cannot go on.
+    /// Why a search cannot go on.
     fn search_ended(&self, error: RunError) -> Error {
         match error {
-            // it is of the motion that the run found
+            // it is of the motion that was found
             RunError::Event(error @ (EventError::NotANumber { .. } | EventError::NotContinuous { .. })) => {
                 Error::Failed(format!("--method {}: {error}", self.method))
             }

@@ -299,6 +299,7 @@ impl Propagate {
             | RunError::Unsolved { .. }
             | RunError::Stuck { .. }
             | RunError::Force { .. }
+            | RunError::Nonsense { .. }
             | RunError::OutOfRange { .. } => Error::Failed(format!("--method {}: {error}", self.method)),
             error => Error::Input(error.to_string()),
         }

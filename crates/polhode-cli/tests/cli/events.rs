@@ -121,31 +121,59 @@ fn events_of_numbers_that_are_no_rotation_fail() {
     for part in ["--method explicit-euler", "the quaternion", "no longer describe the motion"] {
         assert!(answer.err.contains(part), "{}", answer.err);
     }
+    // the norm is 1.5 after 14 steps: of the cosine of the angle the first change of sign is before, and the next one, a turn later, behind
+    let event = "--event 'angle(body x, space x) > 90deg'";
+    let answer = run(&format!("{BODY} --until 10 {event} --method explicit-euler --step 0.5"));
+    assert_eq!((answer.code, answer.out.lines().count()), (1, 2), "{answer:?}");
+    let time = number(&cells(answer.out.lines().last().unwrap())[1]);
+    assert!((1.5..1.7).contains(&time), "{time}");
+    assert!(answer.err.contains("--method explicit-euler: at 8.125 s the quaternion"), "{}", answer.err);
     let coarse = run(&format!("{BODY} --until 10 {event} --method rk4 --step 2"));
     assert!(coarse.err.contains("--step: '2': turns the body by 2.0 rad per step"), "{}", coarse.err);
 }
 
-/// A step of Euler's method stretches |m| by √(1 + (h ω)²), ω that across m: the rate passes 100 rad/s, and the run leaves the
-/// range of a double.
+/// A step of Euler's method stretches |m| by √(1 + (h ω)²), ω that across m: the run leaves the range of a double, and what is the case at
+/// its start was before that.
 #[test]
 fn events_before_a_run_diverges_are_rows() {
     let wild = "propagate --moments 1,2,3 --omega 30,20,-10 --until 1000 --method explicit-euler --step 1";
-    let answer = run(&format!("{wild} --event 'rate > 100rad/s' --format csv"));
+    let answer = run(&format!("{wild} --event 'rate > 10rad/s' --format csv"));
     assert_eq!((answer.code, answer.out.lines().count()), (1, 2), "{answer:?}");
     let row = cells(answer.out.lines().last().unwrap());
-    assert!(row[0] == "rate > 100rad/s" && number(&row[1]) > 0.0, "{row:?}");
+    assert!(row[0] == "rate > 10rad/s" && number(&row[1]) == 0.0, "{row:?}");
     for part in ["error: --method explicit-euler: ", " steps, t = ", "take a smaller step"] {
         assert!(answer.err.contains(part), "{}", answer.err);
     }
     let folder = Scratch::new("events-so-far");
     let file = folder.file("events.csv", "");
-    let written = run(&format!("{wild} --event 'rate > 100rad/s' --out {file}"));
+    let written = run(&format!("{wild} --event 'rate > 10rad/s' --out {file}"));
     assert_eq!((written.code, written.out.as_str()), (1, ""), "{written:?}");
     assert_eq!(std::fs::read_to_string(file).unwrap(), answer.out);
     // of a motion that ends early nobody says what does not happen in it
     let none = run(&format!("{wild} --event 'rate < 1e-9rad/s' --format csv"));
     assert_eq!((none.code, none.out.lines().count()), (1, 1), "{none:?}");
     assert!(!none.err.contains("nothing of it happens"), "{}", none.err);
+}
+
+/// An axis that stays at the limit crosses it by rounding alone, which at last is no crossing: events of others before are rows.
+#[test]
+fn events_before_the_search_along_the_exact_motion_ends_are_rows() {
+    let spin = "propagate --moments 1,2,3 --omega 0,0,1 --angles 0,85,0 --angle-unit deg --euler zxz --until 100 --format csv";
+    let answer = run(&format!(
+        "{spin} --event 'angle(body z, space z) > 85deg' --event 'angle(body x, space x) > 45deg'"
+    ));
+    assert_eq!(answer.code, 1, "{}", answer.err);
+    assert!(answer.err.contains("--method exact: the event \"enters cone\" jumps"), "{}", answer.err);
+    let rows: Vec<Vec<String>> = answer.out.lines().skip(1).map(cells).collect();
+    let others = rows.iter().filter(|row| row[0] == "angle(body x, space x) > 45deg");
+    let mut count = 0;
+    for (k, row) in others.enumerate() {
+        // cos(t) of the turn about body z, whose tilt leaves space x
+        let time = (2.0 * k as f64 + 0.25) * std::f64::consts::PI;
+        assert!((number(&row[1]) - time).abs() < 1e-9, "{row:?}");
+        count += 1;
+    }
+    assert_eq!(count, 5);
 }
 
 #[test]
