@@ -229,7 +229,7 @@ impl Record {
     pub fn windows(&self, windows: &[(f64, f64)]) -> Result<Record, RecordError> {
         let mut cut = self.of_none();
         let mut before = f64::NEG_INFINITY;
-        for window in joined(windows)? {
+        for window in joined(windows).map_err(|(start, end)| RecordError::Window { start, end })? {
             let start = if window.0 == before { before.next_up() } else { window.0 };
             before = window.1;
             let part = self.span((start, window.1));
@@ -347,12 +347,12 @@ fn outliers(segment: &Segment) -> Vec<Outlier> {
 /// The windows with those that overlap made one, in the order of their starts.
 ///
 /// # Errors
-/// A window that is not ascending.
+/// The window that is not ascending.
 #[doc(hidden)]
-pub fn joined(windows: &[(f64, f64)]) -> Result<Vec<(f64, f64)>, RecordError> {
+pub fn joined(windows: &[(f64, f64)]) -> Result<Vec<(f64, f64)>, (f64, f64)> {
     let is_window = |(start, end): &(f64, f64)| start.is_finite() && end.is_finite() && start < end;
-    if let Some(&(start, end)) = windows.iter().find(|window| !is_window(window)) {
-        return Err(RecordError::Window { start, end });
+    if let Some(wrong) = windows.iter().find(|window| !is_window(window)) {
+        return Err(*wrong);
     }
     let mut sorted = windows.to_vec();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0));

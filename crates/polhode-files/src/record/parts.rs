@@ -79,7 +79,8 @@ impl Parts {
     /// As [`open`](super::open); a window that is not ascending.
     pub fn open(path: &Path, reading: &ReadOptions, windows: &[(f64, f64)]) -> Result<Self, Error> {
         let mut spans: Vec<(f64, f64)> = Vec::new();
-        for (start, end) in joined(windows).map_err(|error| Error::Input(error.to_string()))? {
+        let refused = |(start, end)| Error::Input(RecordError::Window { start, end }.to_string());
+        for (start, end) in joined(windows).map_err(refused)? {
             match spans.last_mut() {
                 Some(last) if start <= last.1 => last.1 = end,
                 _ => spans.push((start, end)),

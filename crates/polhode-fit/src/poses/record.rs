@@ -1,7 +1,7 @@
 //! A record of measured attitudes.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use polhode::record::{Record, Segment};
+use polhode::record::{Record, Segment, joined};
 use polhode::rotation::Quat;
 
 use crate::likelihood::local;
@@ -214,19 +214,20 @@ impl Poses {
         Poses { segments: self.segments.iter().map(bare).collect(), ..self.clone() }
     }
 
-    /// The parts that lie in the windows (start, end), s, both ends included.
+    /// The parts that lie in the windows (start, end), s, both ends included. Windows that overlap count as one, and where one ends
+    /// and the next begins the attitude is of the first, as in [`Record::windows`].
     ///
     /// # Errors
     /// A window that is not ascending, or without samples.
     pub fn windows(&self, windows: &[(f64, f64)]) -> Result<Poses, PosesError> {
         let mut segments = Vec::new();
-        for &(start, end) in windows {
-            if !(start.is_finite() && end.is_finite() && start < end) {
-                return Err(PosesError::Window { start, end });
-            }
+        let mut last = f64::NEG_INFINITY;
+        for (start, end) in joined(windows).map_err(|(start, end)| PosesError::Window { start, end })? {
+            let first = if start == last { last.next_up() } else { start };
+            last = end;
             let before = segments.len();
             for s in &self.segments {
-                let low = s.times.partition_point(|t| *t < start);
+                let low = s.times.partition_point(|t| *t < first);
                 let high = s.times.partition_point(|t| *t <= end);
                 segments.extend((low < high).then(|| s.part(low..high)));
             }

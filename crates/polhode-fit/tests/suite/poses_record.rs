@@ -73,6 +73,17 @@ fn windows_keep_the_samples_within_them() {
     assert!(all.windows(&[(f64::NAN, 1.0)]).is_err() && all.windows(&[(0.0, f64::INFINITY)]).is_err());
 }
 
+/// Windows that overlap are one, and where one ends and the next begins the attitude is of the first: none serves twice.
+#[test]
+fn overlapping_windows_of_attitudes_are_one() {
+    let times = times();
+    let all = Poses::new("a", &times, &turned(&times)).unwrap();
+    let spans = [(8, 14), (3, 10), (14, 20), (3, 10)].map(|(start, end)| (times[start], times[end]));
+    let cut = all.windows(&spans).unwrap();
+    let own: Vec<&[f64]> = cut.segments().iter().map(|s| s.times()).collect();
+    assert_eq!(own, [&times[3..15], &times[15..21]]);
+}
+
 /// Joined records keep their counts; inverses and bare attitudes are those of each sample.
 #[test]
 fn records_are_joined_inverted_and_bared_sample_by_sample() {
