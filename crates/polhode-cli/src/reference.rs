@@ -1,8 +1,9 @@
 //! Attitudes that others are compared with: nothing but their names tells how they are read.
 
 use polhode::audit::{Attitudes, Direction, Reading, Trajectory};
+use polhode_files::ReadAs;
 use polhode_files::error::Error;
-use polhode_files::text::short;
+use polhode_files::text::{short, visible};
 use polhode_files::trajectory::FoundTrajectory;
 
 use crate::flags::attitude::check_matrices;
@@ -57,4 +58,30 @@ pub(crate) fn attitudes(
         }
     }
     Ok((rows, reading))
+}
+
+/// By how many seconds the times that are read as `own` are later on the clock of the `record`, where they count from a moment of their
+/// own. `refused`: the refusal by a rule, and what to do.
+///
+/// # Errors
+/// A record that counts from no moment, and moments whose difference is open.
+pub(crate) fn shift(
+    own: &ReadAs,
+    record: &ReadAs,
+    refused: impl Fn(&str, &str) -> Error,
+) -> Result<f64, Error> {
+    let Some(begins) = own.begins else { return Ok(0.0) };
+    let refused = |rule: &str| {
+        let remedy =
+            "write the times of both as dates or counts since 1970, or of both in s since one moment";
+        refused(rule, remedy)
+    };
+    let Some(other) = record.begins else {
+        let (times, since) = (&own.times.0, own.since.as_deref().unwrap_or_default());
+        return Err(refused(&format!(
+            "its times are {times}, which are read from the first row on, {}, and those of the record count from no such moment",
+            visible(since)
+        )));
+    };
+    begins.seconds_since(&other).map_err(|error| refused(&error.to_string()))
 }

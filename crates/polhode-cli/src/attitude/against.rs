@@ -10,7 +10,7 @@ use polhode_files::text::{rounded, visible};
 use polhode_files::trajectory::read;
 use polhode_files::{ReadAs, ReadOptions};
 
-use crate::reference::attitudes;
+use crate::reference::{attitudes, shift};
 
 /// Times agree within this share of the mean interval of the reference.
 const SAME_TIME: f64 = 1e-6;
@@ -27,8 +27,7 @@ pub(super) struct Reference {
     pub(super) name: String,
     rows: Trajectory,
     reading: Reading,
-    /// The first time as it is written, where the others count from it.
-    since: Option<String>,
+    read_as: ReadAs,
     /// Whether a time of the record is one of its own.
     has_met: bool,
     /// What its digits leave open, rad.
@@ -48,7 +47,7 @@ impl Reference {
         let found = read(path, &ReadOptions::default())?;
         let name = visible(&path.display().to_string()).into_owned();
         let refused = |rule: &str, remedy: &str| Error::input("--against", &name, rule, remedy);
-        let (since, contradiction) = (found.read_as.since.clone(), found.contradicted_time.clone());
+        let (read_as, contradiction) = (found.read_as.clone(), found.contradicted_time.clone());
         let (rows, reading) = attitudes(found, &name, refused)?;
         let off = |q: &[f64; 4]| (q.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs();
         let resolution = match &rows.attitude {
@@ -63,7 +62,7 @@ impl Reference {
             name,
             rows,
             reading,
-            since,
+            read_as,
             has_met: false,
             resolution,
             asked: 0,
@@ -75,17 +74,14 @@ impl Reference {
         })
     }
 
-    /// Refuses times that count from the first row of the file, where those of the `record` do not count from the same moment.
-    pub(super) fn check_start(&self, record: &ReadAs) -> Result<(), Error> {
-        let Some(first) = self.since.as_deref().filter(|_| self.since != record.since) else { return Ok(()) };
-        let other = record.since.as_deref().unwrap_or("another time");
-        let rule = format!(
-            "its times count from its first row, {}, and those of the record from {}",
-            visible(first),
-            visible(other)
-        );
-        let remedy = "let both files begin at one time, or write the times of both in s since one moment";
-        Err(Error::input("--against", &self.name, &rule, remedy))
+    /// Brings its times to the clock of the `record`, where they count from a moment of their own.
+    pub(super) fn align(&mut self, record: &ReadAs) -> Result<(), Error> {
+        let refused = |rule: &str, remedy: &str| Error::input("--against", &self.name, rule, remedy);
+        let shift = shift(&self.read_as, record, refused)?;
+        // once: all parts of a record have one clock
+        self.read_as.begins = None;
+        self.rows.times.iter_mut().for_each(|t| *t += shift);
+        Ok(())
     }
 
     /// Its attitude at the time `t`, s.

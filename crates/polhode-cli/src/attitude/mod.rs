@@ -112,7 +112,7 @@ impl Attitude {
             let read_as = readings.read_as();
             self.reading.check_times(&read_as)?;
             if let Some(reference) = &mut reference {
-                reference.check_start(&read_as)?;
+                reference.align(&read_as)?;
                 let times = record.segments.iter().flat_map(|segment| segment.times());
                 reference.check(times, readings.has_more())?;
             }

@@ -14,7 +14,7 @@ use polhode_files::trajectory::read;
 use polhode_files::{ReadAs, ReadOptions};
 use polhode_pages::verdict::Difference;
 
-use crate::reference::attitudes;
+use crate::reference::{attitudes, shift};
 
 /// A trajectory that is right, with its body.
 pub(super) struct Golden {
@@ -68,20 +68,8 @@ impl Golden {
 
     /// Brings its times to the clock of the `record`, where they count from a moment of their own.
     pub(super) fn align(&mut self, record: &ReadAs) -> Result<(), Error> {
-        let Some(begins) = self.read_as.begins else { return Ok(()) };
-        let refused = |rule: &str| {
-            let remedy =
-                "write the times of both as dates or counts since 1970, or of both in s since one moment";
-            Error::input(&self.name, "", rule, remedy)
-        };
-        let Some(other) = record.begins else {
-            let (times, since) = (&self.read_as.times.0, self.read_as.since.as_deref().unwrap_or_default());
-            return Err(refused(&format!(
-                "its times are {times}, which are read from the first row on, {}, and those of the record count from no such moment",
-                visible(since)
-            )));
-        };
-        let shift = begins.seconds_since(&other).map_err(|error| refused(&error.to_string()))?;
+        let refused = |rule: &str, remedy: &str| Error::input(&self.name, "", rule, remedy);
+        let shift = shift(&self.read_as, record, refused)?;
         self.rows.times.iter_mut().for_each(|t| *t += shift);
         Ok(())
     }

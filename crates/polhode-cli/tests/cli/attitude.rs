@@ -323,7 +323,7 @@ fn the_summary_says_whether_the_budget_holds() {
 }
 
 #[test]
-fn times_that_count_from_the_first_rows_of_two_files_are_compared_where_these_are_of_one_time() {
+fn times_that_count_from_the_first_rows_of_two_files_are_compared_by_their_moments() {
     let scratch = Scratch::new("attitude-since");
     let first = 1_700_000_000_000_u64; // ms since 1970
     let file = |name: &str, first: u64, head: &str, row: &str| {
@@ -334,12 +334,22 @@ fn times_that_count_from_the_first_rows_of_two_files_are_compared_where_these_ar
     let reference = |name: &str, first: u64| file(name, first, "t,q_w,q_x,q_y,q_z", "1,0,0,0");
     let one = run(&format!("attitude {record} --kind rate --against {}", reference("one.csv", first)));
     assert!(one.code == 0 && one.err.contains("20 rows compared"), "{one:?}");
-    // half a second later, five of its rows
+    let dates: String =
+        (0..20).map(|k| format!("2023-11-14T22:13:{:04.1}Z,1,0,0,0\n", 20.0 + 0.1 * f64::from(k))).collect();
+    let dated = scratch.file("dated.csv", format!("t,q_w,q_x,q_y,q_z\n{dates}"));
+    let dated = run(&format!("attitude {record} --kind rate --against {dated}"));
+    assert!(dated.code == 0 && dated.err.contains("20 rows compared"), "{dated:?}");
+    // half a second later, fifteen rows are at a time of both
     let later = reference("later.csv", first + 500);
-    let says = "from its first row, 1700000000500, and those of the record from 1700000000000";
-    refused_with(&["attitude", &record, "--against", &later], &["--against", "later.csv", says]);
+    let from = run(&format!("attitude {record} --kind rate --start 1,0,0,0 --against {later}"));
+    assert!(from.code == 0 && from.err.contains("15 rows compared"), "{from:?}");
+    refused_with(
+        &["attitude", &record, "--kind", "rate", "--against", &later],
+        &["--against", "later.csv", "no attitude at the first time", "--start"],
+    );
     let plain = scratch.file("plain.csv", "t,wx (rad/s),wy (rad/s),wz (rad/s)\n0,1,0,0\n0.1,1,0,0\n");
-    refused_with(&["attitude", &plain, "--against", &later], &["1700000000500", "another time"]);
+    let says = "read from the first row on, 1700000000500, and those of the record count from no such moment";
+    refused_with(&["attitude", &plain, "--against", &later], &["--against", "later.csv", says]);
 }
 
 #[test]
