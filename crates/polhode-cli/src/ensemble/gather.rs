@@ -14,7 +14,7 @@ use super::folder::{ERRORS, Finished, finished, record_of_results};
 use super::record::{Identity, Record};
 use super::reduce::{self, reduce};
 use super::results::Results;
-use super::verify::verified;
+use super::verify::{unchanged, verified};
 use super::work::{ATTITUDES, Largest, OMEGAS, Shares};
 use super::{said, threads_of};
 use crate::memory;
@@ -246,9 +246,17 @@ fn together(shards: &[Finished]) -> Result<Shares, Error> {
 }
 
 /// Whether a folder holds results of the run `identity`, with every file that its record names.
+///
+/// # Errors
+/// A file that is not as the run wrote it.
 pub(super) fn has_results(folder: &Path, identity: &Identity) -> Result<bool, Error> {
+    let is_whole = |record: &Record| {
+        let mut names = record.files.keys().chain(record.sha256.keys());
+        record.is_results() && names.all(|name| folder.join(name).is_file())
+    };
     let record = record_of_results(folder)?.filter(|record| record.identity == *identity);
-    Ok(record.is_some_and(|record| {
-        record.is_results() && record.files.keys().all(|name| folder.join(name).is_file())
-    }))
+    match record.filter(is_whole) {
+        Some(record) => unchanged(folder, &record).map(|()| true),
+        None => Ok(false),
+    }
 }

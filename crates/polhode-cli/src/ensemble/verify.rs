@@ -1,15 +1,18 @@
-//! Whether a shard is what its run wrote: bytes, numbers that can be, and members that add up.
+//! Whether a shard is what its run wrote: bytes, numbers that can be, and members that add up; and the bytes of results.
 
 use std::collections::HashMap;
+use std::path::Path;
 
 use polhode::body::Problem;
 use polhode::method::method;
 use polhode_files::error::Error;
 use polhode_files::inputs;
 use polhode_files::npy::{Array, head};
+use polhode_pages::output::MARK;
 
 use super::checksum::Checksum;
 use super::folder::{FAILURES, Finished};
+use super::record::Record;
 use super::work::{ATTITUDES, OMEGAS, Shares};
 
 /// What rounding makes of a norm of 1 at most, by a method that keeps it: the random walk of 2^53 steps, half an ulp each.
@@ -54,6 +57,32 @@ pub(super) fn verified(shard: &Finished) -> Result<Shares, Error> {
         })?;
     }
     Ok(shares)
+}
+
+/// Refuses results that are not as the run of their `record` wrote them.
+///
+/// # Errors
+/// The first file that is not.
+pub(super) fn unchanged(folder: &Path, record: &Record) -> Result<(), Error> {
+    let refused = |name: &str, rule: &str| {
+        let (path, folder) = (folder.join(name), folder.display());
+        let remedy = format!("remove {folder} and run the ensemble again, or name another --out");
+        Err(Error::Input(format!("{}: {rule}; {remedy}", path.display())))
+    };
+    if !record.is_as_written() {
+        return refused(MARK, "it is not as its run wrote it");
+    }
+    for (name, written) in record.sha256.iter().filter(|(name, _)| *name != MARK) {
+        match inputs::open_own(&folder.join(name)).and_then(Checksum::of) {
+            Ok(found) if found == *written => {}
+            Ok(found) => {
+                let rule = format!("it is not as its run wrote it: SHA-256 {found}, not {written}");
+                return refused(name, &rule);
+            }
+            Err(error) => return refused(name, &error.to_string()),
+        }
+    }
+    Ok(())
 }
 
 /// A row of an array: its number among the times, and the member.

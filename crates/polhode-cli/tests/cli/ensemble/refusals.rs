@@ -297,6 +297,43 @@ pub(super) fn sha256(bytes: &[u8]) -> String {
     sha2::Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
+/// Results that stand already are those of their run: a run that finds others says so, and one that misses a file writes all again.
+#[test]
+fn a_byte_that_was_changed_in_results_is_found() {
+    let scratch = Scratch::new("ensemble-results");
+    scratch.file("spec.toml", EXACT);
+    let line = "ensemble spec.toml --out out";
+    done(line, &scratch);
+    let out = scratch.0.join("out");
+    let before = contents(&out);
+    for name in ["attitudes.npy", "summary.csv", "dispersion.svg", "run.toml"] {
+        let path = out.join(name);
+        let bytes = fs::read(&path).unwrap();
+        let mut changed = bytes.clone();
+        let place = match name {
+            "attitudes.npy" => 128 + 8 * 1000,
+            // of its checksum of another file
+            "run.toml" => {
+                let (head, key) = (String::from_utf8(bytes.clone()).unwrap(), "\"summary.csv\" = \"");
+                head.find(key).unwrap() + key.len()
+            }
+            _ => bytes.len() - 3,
+        };
+        changed[place] ^= 1;
+        fs::write(&path, changed).unwrap();
+        let told = refusal(&scratch, line);
+        for part in [&format!("{name}: it is not as its run wrote it"), "run the ensemble again"] {
+            assert!(told.contains(part), "'{part}' is not in {told}");
+        }
+        fs::write(&path, bytes).unwrap();
+    }
+    let again = polhode(&words(line), &scratch.0);
+    assert!(again.code == 0 && again.err.contains("holds the results of this run already"), "{}", again.err);
+    fs::remove_file(out.join("dispersion.svg")).unwrap();
+    done(line, &scratch);
+    assert!(contents(&out) == before);
+}
+
 #[test]
 fn a_byte_that_was_changed_in_a_shard_is_found_and_nothing_is_written() {
     let scratch = shards("ensemble-bytes");
