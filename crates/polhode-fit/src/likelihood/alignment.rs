@@ -46,7 +46,8 @@ pub(crate) fn align(nodes: &[Node], rates: &[Vector3<f64>]) -> Option<Alignment>
     })
 }
 
-/// The rate at the time of each node: the mean of the samples within a part of `width`, or the nearest one.
+/// The rate at the time of each node: the mean of the samples within a quarter of `width` on both sides, or of the next sample behind that, or
+/// of the last where there is none.
 pub(crate) fn at_nodes(
     nodes: &[Node],
     times: &[f64],
