@@ -316,7 +316,7 @@ pub(super) fn models(e: &Estimate) -> Vec<[String; 7]> {
     let row = |one: &ModelFit| {
         [
             one.model.to_string(),
-            format!("{:.1}", one.gain),
+            gain(one.gain),
             format!("{:.3}", one.share),
             ratio(one, 0),
             ratio(one, 1),
@@ -327,10 +327,15 @@ pub(super) fn models(e: &Estimate) -> Vec<[String; 7]> {
     let of_sensor = |one: &ErrorFit| {
         let ratio = |k: usize| concise(one.ratios[k], one.sigma_ratios[k]);
         let held_out = one.held_out.map_or("-".into(), |square| format!("{square:.3}"));
-        let [gain, share] = [format!("{:.1}", one.gain), format!("{:.3}", one.share)];
+        let [gain, share] = [gain(one.gain), format!("{:.3}", one.share)];
         [error_name(one), gain, share, ratio(0), ratio(1), "-".into(), held_out]
     };
     e.models.iter().map(row).chain(e.reading_errors.iter().map(of_sensor)).collect()
+}
+
+/// A gain of log-likelihood. Far below, a model is refuted, and the number is that of its first order, which does not reach so far.
+fn gain(gain: f64) -> String {
+    if gain < -1000.0 { "< -1000".into() } else { format!("{gain:.1}") }
 }
 
 /// The heads of its columns.
@@ -357,4 +362,17 @@ pub(super) fn error_sizes(e: &Estimate) -> Vec<String> {
 
 fn error_name(one: &ErrorFit) -> String {
     one.error.to_string().replace('-', " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is surely refuted has no number that a reader could take for one.
+    #[test]
+    fn gains_are_told_down_to_a_thousand() {
+        for (value, text) in [(1234.56, "1234.6"), (-1000.0, "-1000.0"), (-1_198_375.5, "< -1000")] {
+            assert_eq!(gain(value), text);
+        }
+    }
 }
