@@ -114,6 +114,8 @@ fn warnings_say_their_numbers() {
     says(Warning::Residuals { times: 9_999.0, noise: 1e-3 }, &["are 9999.0 times"]);
     says(Warning::Residuals { times: 12_345.0, noise: 1e-3 }, &["are 1.2e4 times"]);
     says(Warning::StatedNoise { stated: 0.06, shown: 1e-3 }, &["as 6.00e-2 rad/s", "show 1.00e-3 rad/s"]);
+    let stated = Warning::StatedAttitudeNoise { stated: 0.02, shown: 5e-3 };
+    says(stated, &["as 2.00e-2 rad,", "show 5.00e-3 rad,", "leave it out"]);
     says(Warning::Filtered { correlation: 0.5, times: 3.162 }, &["by 0.50", "is 3.2 times", "by up to that"]);
     says(Warning::Merged { samples: 1 }, &["1 sample was merged"]);
     says(Warning::Outliers { samples: 2 }, &["2 samples were left out"]);

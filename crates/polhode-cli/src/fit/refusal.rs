@@ -43,7 +43,9 @@ pub(super) fn facts(error: &FitError) -> (Option<Facts>, bool) {
         FitError::NoRotation { .. }
         | FitError::StatedNoise { .. }
         | FitError::Solver(_)
-        | FitError::Poses(PoseFault::NoTurn { .. } | PoseFault::HalfTurn { .. }) => (None, true),
+        | FitError::Poses(
+            PoseFault::NoTurn { .. } | PoseFault::StatedNoise { .. } | PoseFault::HalfTurn { .. },
+        ) => (None, true),
         _ => (None, false),
     }
 }

@@ -5,6 +5,7 @@ use core::f64::consts::TAU;
 use polhode::num::Shown;
 use thiserror::Error;
 
+use crate::error::UNSTATED;
 use crate::thresholds::poses::{HALF_TURN, STILL};
 
 /// Why a fit to attitudes is refused.
@@ -37,6 +38,18 @@ pub enum PoseFault {
         turn: f64,
         /// Noise of a component, rad.
         noise: f64,
+    },
+    /// The attitudes would differ by their noise alone as it is stated, and not as neighbours show it.
+    #[error(
+        "the noise of the attitudes is stated as {stated:.2e} rad, and neighbouring ones show {shown:.2e} rad; their turn is too small for \
+         the stated one: {}",
+        UNSTATED
+    )]
+    StatedNoise {
+        /// Noise of a component as it is stated, rad.
+        stated: f64,
+        /// The same as neighbouring attitudes show it, rad.
+        shown: f64,
     },
     /// No motion of any body follows the attitudes, under no torque that a fit has a model of.
     #[error(

@@ -23,7 +23,7 @@ use crate::poses::record::{PoseSegment, Poses};
 use crate::settings::Settings;
 use crate::signal::noise::variance;
 use crate::signal::stretch::Stretch;
-use crate::thresholds::noise::{DEVIATIONS, LEAST};
+use crate::thresholds::noise::{DEVIATIONS, LEAST, STATED};
 use crate::thresholds::poses::{COARSE, FEWEST, HALF_TURN, MOVING, SAME_SIZE, STILL};
 
 /// What is known of the samples before a motion is.
@@ -90,6 +90,10 @@ impl Begun {
             stretches.iter().map(|(times, attitudes)| local::nodes(times, attitudes, width)).collect();
         let unit = unit_of(&nodes, noise).filter(|_| does_turn(&stretches, noise).is_ok());
         let Some(unit) = unit else {
+            let is_misstated = STATED * local_noise < noise && does_turn(&stretches, local_noise).is_ok();
+            if is_misstated {
+                return Err(PoseFault::StatedNoise { stated: noise, shown: local_noise }.into());
+            }
             return Err(does_turn(&stretches, noise)
                 .err()
                 .unwrap_or(FitError::NoRotation { rms: 0.0, noise }));

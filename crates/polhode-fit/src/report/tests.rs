@@ -323,6 +323,20 @@ fn doubts_about_a_likelihood_are_warned_of_with_their_numbers() {
     };
     assert!(!is_told(160, 2.2) && is_told(160, 2.3));
     assert!(!is_told(1_000_000, 1.19) && is_told(1_000_000, 1.21));
+    // a noise that is given more than twice as large as what the motion leaves and neighbours show
+    let is_named = |misfit: f64, local_noise: Option<f64>, noise_is_given: bool, method: Method| {
+        let own = e.attitudes.clone();
+        let own = own.map(|own| AttitudeFit { noise_is_given, local_noise, residual: 0.01, ..own });
+        let e = Estimate { dof: 1_000_000, attitudes: own, method, ..e.clone() };
+        let list = of_likelihood(&e, &Doubts { misfit: Some(misfit), ..none });
+        list.contains(&Warning::StatedAttitudeNoise { stated: 0.03, shown: 0.01 })
+    };
+    for method in [Method::ExactMotion, Method::Smoother] {
+        assert!(is_named(0.24, Some(0.0149), true, method) && !is_named(0.24, Some(0.0151), true, method));
+        assert!(!is_named(0.25, Some(0.01), true, method) && !is_named(0.24, Some(0.01), false, method));
+        // of attitudes that are far apart the motion alone tells it
+        assert_eq!(is_named(0.24, None, true, method), method == Method::ExactMotion);
+    }
 }
 
 fn open(singular: [f64; 5], scatter: Matrix3<f64>) -> Identifiability {

@@ -77,6 +77,13 @@ pub enum Warning {
         /// The same as the readings show it, rad/s.
         shown: f64,
     },
+    /// The noise of the attitudes that the user states is more than theirs.
+    StatedAttitudeNoise {
+        /// Noise of one component as it is stated, rad.
+        stated: f64,
+        /// What the motion leaves of one component, rad.
+        shown: f64,
+    },
     /// The noise of readings is correlated from one to the next, as where these were averaged, filtered or interpolated before they were sampled.
     Filtered {
         /// Correlation of the noise of a reading with that of the next.
@@ -333,6 +340,10 @@ impl fmt::Display for Warning {
             Self::StatedNoise { stated, shown } => write!(
                 f,
                 "the noise is stated as {stated:.2e} rad/s, and the readings show {shown:.2e} rad/s: {UNSTATED}"
+            ),
+            Self::StatedAttitudeNoise { stated, shown } => write!(
+                f,
+                "the noise of the attitudes is stated as {stated:.2e} rad, and they show {shown:.2e} rad, so that deviations are too wide: {UNSTATED}"
             ),
             Self::Filtered { correlation, times } => write!(
                 f,

@@ -1,7 +1,7 @@
 //! Which warnings an estimate needs.
 
 use crate::solve::weak_estimate::Convergence;
-use crate::thresholds::noise::DEVIATIONS;
+use crate::thresholds::noise::{DEVIATIONS, STATED};
 use crate::thresholds::poses::{DOUBTFUL, MOVING};
 use crate::thresholds::warnings::{APART, AS_WELL, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, UNEXPLAINED};
 use nalgebra::Vector3;
@@ -12,7 +12,7 @@ use crate::models::reading_error::ReadingError;
 use crate::poses::free::{Free, by_chance};
 use crate::report::attitudes::AttitudeFit;
 use crate::report::differing::Differing;
-use crate::report::estimate::Estimate;
+use crate::report::estimate::{Estimate, Method};
 use crate::report::parts::{Halves, Scatter, halves};
 use crate::report::sensor::{Refuted, Suspect};
 use crate::report::torque_free::{InvariantTrend, blow, memory};
@@ -217,12 +217,22 @@ pub(super) fn of_likelihood(e: &Estimate, doubts: &Doubts) -> Vec<Warning> {
     }
     if let Some(attitudes) = &e.attitudes {
         let AttitudeFit { largest_turn: turn, noise_sigma, .. } = *attitudes;
+        let chance = by_chance(e.dof as f64);
         if turn > DOUBTFUL {
             list.push(Warning::CoarseAttitudes { turn });
         }
-        let most = by_chance(e.dof as f64).max(RESIDUALS);
+        let most = chance.max(RESIDUALS);
         if let Some(times) = misfit.filter(|misfit| *misfit > most).map(f64::sqrt) {
             list.push(Warning::AttitudeResiduals { times, noise: noise_sigma / times });
+        }
+        // torque noise that is given too large leaves little too, and neighbours the same
+        let is_calm = match attitudes.local_noise {
+            Some(local) => STATED * local < noise_sigma,
+            None => e.method == Method::ExactMotion,
+        };
+        let is_less = misfit.is_some_and(|misfit| STATED * STATED * chance * misfit < 1.0);
+        if attitudes.noise_is_given && is_less && is_calm {
+            list.push(Warning::StatedAttitudeNoise { stated: noise_sigma, shown: attitudes.residual });
         }
         if let Some(alignment) = attitudes.alignment.filter(|alignment| alignment.moving_gain > MOVING) {
             list.push(Warning::MovingAxes { turn: alignment.moving, gain: alignment.moving_gain });

@@ -591,6 +591,27 @@ fn a_segment_of_few_attitudes_is_told() {
     assert!(!whole.warnings.iter().any(|warning| matches!(warning, Warning::ShortSegments { .. })));
 }
 
+/// A noise that is stated more than twice as large as what the motion leaves and neighbouring attitudes show is named with it; one that
+/// would hide the turn is refused with it.
+#[test]
+fn a_stated_noise_that_the_attitudes_do_not_have_is_named() {
+    let poses = toss(ASYMMETRIC, 10.0, 30.0, 0.005, 1).poses();
+    let of = |stated: f64| fit_poses(&poses, &Settings::default().with_attitude_noise(stated));
+    for (given, is_named) in [(0.005, false), (0.008, false), (0.02, true)] {
+        let e = of(given).unwrap();
+        let found = e.warnings.iter().find_map(|warning| match warning {
+            Warning::StatedAttitudeNoise { stated, shown } => Some((*stated, *shown)),
+            _ => None,
+        });
+        assert_eq!(found.is_some(), is_named, "{given}: {:?}", e.warnings);
+        let is_right = |(stated, shown): (f64, f64)| stated == given && (shown / 0.005 - 1.0).abs() < 0.1;
+        assert!(found.is_none_or(is_right), "{found:?}");
+    }
+    let refused = of(2.0).unwrap_err();
+    let FitError::Poses(PoseFault::StatedNoise { stated, shown }) = refused else { panic!("{refused}") };
+    assert!(stated == 2.0 && (shown / 0.005 - 1.0).abs() < 0.2, "{shown}");
+}
+
 /// Noise of rates has no meaning where there are none.
 #[test]
 fn noise_of_rates_that_are_not_there_is_refused() {
