@@ -81,10 +81,8 @@ impl Propagate {
         cost::announce(method.as_ref(), body, start.to_f64(), clock, steps as u64);
         let mut run = run_of(method.as_ref(), body, start, clock)?.watching(Watch::Never);
         let (found, ended) = run.events_so_far(events, to, spacing);
-        let ended = match ended.map_err(|error| self.search_ended(error)) {
-            Ok(()) => self.check_sense(&run.sample()),
-            failed => failed,
-        };
+        let ended = ended.map_err(|error| self.search_ended(error));
+        let ended = ended.and_then(|()| self.check_sense(&run.sample()));
         Ok((found, ended))
     }
 
