@@ -19,6 +19,9 @@ use crate::error::{of, refused};
 use crate::states::States;
 use crate::through::{self, FittedMotion, Passage};
 
+/// All integers below are doubles.
+const WHOLE: f64 = (1_u64 << f64::MANTISSA_DIGITS) as f64;
+
 /// Times between two looks for Ctrl-C.
 const PART: usize = 1 << 12;
 
@@ -40,9 +43,12 @@ pub(crate) trait Motion: Sync {
 
     fn states(&self, t: &Bound<'_, PyAny>, order: Order) -> PyResult<States> {
         let py = t.py();
-        if t.is_exact_instance_of::<PyFloat>() || t.is_exact_instance_of::<PyInt>() {
+        let is_float = t.is_exact_instance_of::<PyFloat>();
+        if is_float || t.is_exact_instance_of::<PyInt>() {
             let t: f64 = t.extract().map_err(|_| refused("t: outside the range of a double"))?;
-            if t.abs() <= self.reach() && t.is_finite() {
+            // a larger integer may be no double
+            let is_exact = is_float || t.abs() < WHOLE;
+            if is_exact && t.abs() <= self.reach() && t.is_finite() {
                 let x = self.point_at(t);
                 let omega = self.body().omega_of(&x).into();
                 return Ok(States::one(t, self.body().leave(&x).attitude, omega, order));
