@@ -141,17 +141,17 @@ mod tests {
         let of = |k: usize, ratio: f64, segments: usize| {
             let part = |part: usize| {
                 let mut left = [0.0; 6];
-                left[k] = (0.875 * variance * ratio).sqrt() * if part % 2 == 0 { 1.0 } else { -1.0 };
+                left[k] = (0.875 * variance * ratio).sqrt() * if part.is_multiple_of(2) { 1.0 } else { -1.0 };
                 one_row_each(&weights, &left)
             };
             let parts: Vec<Vec<f64>> = (0..CUTS).map(part).collect();
             let parts: Vec<Vec<f64>> = parts.chunks(CUTS / segments).map(|own| own.concat()).collect();
             differing(&WeakEstimate::of_rows(&columns, &at, parts, variance.sqrt()), variance)
         };
-        for k in 0..6 {
+        for (k, weight) in weights.iter().enumerate() {
             let (chance, name) = if k == 0 { (DIFFERING, "drag") } else { (SCATTERED, "the tensor") };
             let least = quantile(8.0, chance) / 8.0;
-            let before = variance / (8.0 * weights[k] * weights[k]);
+            let before = variance / (8.0 * weight * weight);
             for segments in [1, 2, 8] {
                 assert!(of(k, 0.999 * least, segments).is_none(), "{k} {segments}");
                 let found = of(k, 1.001 * least, segments).unwrap();

@@ -201,7 +201,7 @@ mod tests {
         let of = |chi2: f64| {
             // forty numbers of that size, over their variance
             let size = (chi2 / 40.0 * 0.25).sqrt() / weight;
-            let sign = |part: usize| if part % 2 == 0 { 1.0 } else { -1.0 };
+            let sign = |part: usize| if part.is_multiple_of(2) { 1.0 } else { -1.0 };
             scatter(&eight(weight, |part| Coordinates::repeat(size * sign(part))), 0.25)
         };
         assert_eq!(of(0.999 * by_chance), None);

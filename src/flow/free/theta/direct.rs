@@ -167,10 +167,15 @@ fn made<S: Doubled>(numbers: &[S; GIVEN], about_smallest: &[bool]) -> Made<S> {
     }
     let kappa = norm * z0 * z0 * 2.0 / ((norm + amp_a) * t4);
     let mut sums = [first(&z_even), first(&z_odd), first(&w_even), first(&w_odd)];
-    for n in 0..TERMS {
-        sums[1][n] = -(sums[1][n] * delta);
-        sums[2][n] = sums[2][n] * flip;
-        sums[3][n] = sums[3][n] * (flip * delta);
+    let [_, odd_of_z, even_of_w, odd_of_w] = &mut sums;
+    for term in odd_of_z {
+        *term = -(*term * delta);
+    }
+    for term in even_of_w {
+        *term = *term * flip;
+    }
+    for term in odd_of_w {
+        *term = *term * (flip * delta);
     }
     for (sum, family) in sums.iter_mut().zip([T, U, V_PLUS, V_MINUS]) {
         *sum = coefficients(*sum, family);
