@@ -344,18 +344,7 @@ mod tests {
             jumps: 0,
             has_rates: false,
         };
-        Free {
-            followed,
-            torque: Acting::Nothing,
-            gain: None,
-            without: None,
-            models: Vec::new(),
-            alternatives: None,
-            moving: None,
-            misread: None,
-            read,
-            steady: None,
-        }
+        Free::of(followed, read)
     }
 
     /// One of ten numbers that leaves e times as much is less likely by ten. What the noise does not explain, which is given or told by

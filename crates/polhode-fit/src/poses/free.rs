@@ -299,6 +299,25 @@ fn turned(x: &Coordinates, turn: &Quat<f64>) -> Coordinates {
 }
 
 #[cfg(test)]
+impl Free {
+    /// This motion of these readings, and nothing beside it.
+    pub(crate) fn of(followed: Followed, read: Read) -> Free {
+        Free {
+            followed,
+            torque: Acting::Nothing,
+            gain: None,
+            without: None,
+            models: Vec::new(),
+            alternatives: None,
+            moving: None,
+            misread: None,
+            read,
+            steady: None,
+        }
+    }
+}
+
+#[cfg(test)]
 mod tests {
     use super::*;
     use crate::likelihood::track::Model;
@@ -444,18 +463,7 @@ mod tests {
                 jumps: 0,
                 has_rates: true,
             };
-            Free {
-                followed,
-                torque: Acting::Nothing,
-                gain: None,
-                without: None,
-                models: Vec::new(),
-                alternatives: None,
-                moving: None,
-                misread: None,
-                read,
-                steady: None,
-            }
+            Free::of(followed, read)
         };
         let (plain, given) = (Settings::default(), Settings::default().with_attitude_noise(0.5));
         assert_eq!(free(1.0, Some(0.25), true).misfit(&plain), Some(16.0));

@@ -499,18 +499,8 @@ mod tests {
             jumps: 2,
             has_rates: !has_attitudes,
         };
-        Free {
-            followed,
-            torque: Acting::Drag,
-            gain: Some(7.0),
-            without: Some(x),
-            models: Vec::new(),
-            alternatives: None,
-            moving: None,
-            misread: None,
-            read,
-            steady: None,
-        }
+        let (torque, gain, without) = (Acting::Drag, Some(7.0), Some(x));
+        Free { torque, gain, without, ..Free::of(followed, read) }
     }
 
     /// Attitudes that are 0.03 rad off are three deviations of a hundredth off, and rates by 0.5 two of a quarter; only samples that are used count, at

@@ -11,7 +11,6 @@ use polhode::rotation::Quat;
 use crate::error::FitError;
 use crate::estimator::{Fitted, fit, fitted};
 use crate::likelihood::alternatives::RateError;
-use crate::likelihood::choice::Acting;
 use crate::likelihood::descent::Levels;
 use crate::likelihood::growth::Followed;
 use crate::likelihood::track::Model;
@@ -872,18 +871,7 @@ fn rates_beside_attitudes_are_warned_of_by_what_is_left() {
             jumps: 0,
             has_rates: true,
         };
-        Free {
-            followed,
-            torque: Acting::Nothing,
-            gain: None,
-            without: None,
-            models: Vec::new(),
-            alternatives: None,
-            moving: None,
-            misread,
-            read,
-            steady: None,
-        }
+        Free { misread, ..Free::of(followed, read) }
     };
     let most = f64::sqrt(3.5);
     assert!(of_rates(&free(0.999 * most, None, true), None).is_empty());
