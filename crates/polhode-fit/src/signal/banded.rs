@@ -4,6 +4,8 @@
 
 use multiversion::multiversion;
 
+use crate::signal::zeros::zeros;
+
 /// Numbers in a register of the widest processors.
 pub(crate) const REGISTER: usize = 8;
 
@@ -20,7 +22,7 @@ pub(crate) struct Banded {
 impl Banded {
     pub(crate) fn zeros(size: usize, band: usize) -> Self {
         let pitch = pitch(band);
-        Banded { size, band, pitch, columns: vec![0.0; size * pitch] }
+        Banded { size, band, pitch, columns: zeros(size * pitch) }
     }
 
     /// Where entry (i, j) stands; j ≤ i ≤ j + band.
@@ -262,8 +264,8 @@ fn forward(columns: &[f64], pitch: usize, band: usize, b: &mut [f64], width: usi
 fn inverse_band(columns: &[f64], pitch: usize, band: usize) -> Vec<f64> {
     let (size, width) = (columns.len() / pitch, 2 * band + 1);
     // each column with what stands above its diagonal too, so that it is added as a whole
-    let mut both = vec![0.0; size * width];
-    let (mut inverse, mut products) = (vec![0.0; columns.len()], vec![0.0; band]);
+    let mut both = zeros(size * width);
+    let (mut inverse, mut products) = (zeros(columns.len()), vec![0.0; band]);
     for j in (0..size).rev() {
         let (column, after) = (&columns[j * pitch..][..pitch], band.min(size - 1 - j));
         products.fill(0.0);

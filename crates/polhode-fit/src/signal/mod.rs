@@ -10,6 +10,7 @@ pub(crate) mod quadrature;
 pub(crate) mod stretch;
 pub(crate) mod terms;
 pub(crate) mod test_functions;
+pub(crate) mod zeros;
 
 #[cfg(test)]
 mod tests;

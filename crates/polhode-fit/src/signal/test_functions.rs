@@ -9,6 +9,7 @@ use nalgebra::{Matrix3, Matrix4, Vector4};
 
 use crate::signal::banded::Banded;
 use crate::signal::stretch::Stretch;
+use crate::signal::zeros::zeros;
 
 /// The test functions of one stretch: φ = (1 − u²)⁴, u = (t − centre)/radius, centres evenly spaced.
 #[derive(Clone, Debug)]
@@ -31,7 +32,7 @@ struct Corrections([Vec<f64>; 4]);
 
 impl Corrections {
     fn zeros(count: usize) -> Self {
-        Corrections(core::array::from_fn(|_| vec![0.0; count + LANES]))
+        Corrections(core::array::from_fn(|_| zeros(count + LANES)))
     }
 }
 
@@ -95,7 +96,7 @@ impl TestFunctions {
 
     /// Zeros for one number of each test, and behind them for as many as are read together.
     pub(crate) fn room(&self) -> Vec<f64> {
-        vec![0.0; self.count + LANES]
+        zeros(self.count + LANES)
     }
 
     pub(crate) fn centres(&self) -> Vec<f64> {

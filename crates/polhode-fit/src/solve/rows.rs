@@ -15,6 +15,7 @@ use crate::signal::moments::{Moments, group, ranges};
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::Terms;
 use crate::signal::test_functions::{Seen, TestFunctions};
+use crate::signal::zeros::zeros;
 use crate::thresholds::radius::LONG;
 
 /// The equations of a stretch row by row, linearised at samples `rates` − `noise`: derivatives with respect to the columns
@@ -29,7 +30,7 @@ pub(crate) fn rows(
     let terms = terms_of(columns, origin, stretch);
     let moments = Moments::new(stretch, noise, tests);
     let width = columns.len() + 6;
-    let mut rows = vec![0.0; 3 * tests.count * width];
+    let mut rows = zeros(3 * tests.count * width);
     add_changes(&mut rows, stretch, noise, columns, &terms, tests);
     let acts_on_samples = |column: &Column| {
         let effect = column.effect();

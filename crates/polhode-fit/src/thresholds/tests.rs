@@ -39,6 +39,7 @@ const NO_THRESHOLDS: &[&str] = &[
     "track OWN",
     "weighed FARTHEST",
     "wheels OWN",
+    "zeros PAGE",
 ];
 
 fn sources(folder: &Path, found: &mut Vec<std::path::PathBuf>) {
