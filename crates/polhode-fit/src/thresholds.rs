@@ -79,6 +79,8 @@ thresholds! {
         ROUNDS: usize = 12, "most rounds at one radius; at low noise two or three do", UNMEASURED;
         FULL_ROUNDS: usize = 6, "rounds that take their whole step", UNMEASURED;
         RELAXED: f64 = 0.5, "share of a later step where torques act: full ones may go to and fro", UNMEASURED;
+        BESIDE: usize = 3_000,
+            "samples from which parts of a round are worked out side by side: threads cost more than they save below", UNMEASURED;
         SHARES: usize = 30, "halvings of a step that loses the smallest moment", UNMEASURED;
         KEPT: f64 = 0.1, "share of the smallest moment that a round leaves at least", UNMEASURED;
         REACHED: f64 = 0.99, "share of that which counts as reached", UNMEASURED;

@@ -5,7 +5,7 @@ use polhode::record::both;
 use crate::signal::banded::REGISTER;
 use crate::signal::covariance::{Covariance, Levels, Shape};
 use crate::thresholds::levels::{BETWEEN, DECADES, FIRST_DECADE, GAIN, RESHAPED, SECTIONS, STEP};
-use crate::thresholds::radius::LONG;
+use crate::thresholds::rounds::BESIDE;
 
 /// What may be fitted of the noise of a stretch.
 #[derive(Clone, Copy, Debug)]
@@ -34,7 +34,7 @@ pub(crate) fn likeliest(
         None => {
             let none = search(Shape::Moments).at(0.0);
             let of = |shape| search(shape).most_likely(none.as_ref());
-            let (first, second) = both(e.len() > LONG / 3, || of(first), || of(second));
+            let (first, second) = both(e.len() > BESIDE / 3, || of(first), || of(second));
             (none, [first, second])
         }
     };
@@ -63,7 +63,7 @@ fn stepped(near: Levels, first: Search<'_>, second: Search<'_>) -> (Option<Found
     let next = |costs: [Option<Found>; 3]| unit * libm::pow(10.0, nearer(costs.map(cost), middle));
     let (of_first, of_second) = (next([a, b, c]), next([other_a, other_b, other_c]));
     // two alone are done sooner than a register of which six are idle, and have the same bits
-    let (first, second) = both(first.e.len() > LONG / 3, || first.at(of_first), || second.at(of_second));
+    let (first, second) = both(first.e.len() > BESIDE / 3, || first.at(of_first), || second.at(of_second));
     (none, [first, second])
 }
 

@@ -15,6 +15,7 @@ use crate::signal::terms::{Terms, cross_derivative, slope};
 use crate::signal::test_functions::{Blocks, Seen, TestFunctions};
 use crate::solve::driven::take_out;
 use crate::thresholds::radius::LONG;
+use crate::thresholds::rounds::BESIDE;
 
 /// The weak equations of one stretch, linearised at samples `rates` − `noise`, a tensor and values of the columns.
 ///
@@ -50,6 +51,23 @@ impl Linearised {
         let terms = terms_of(columns, &origin, stretch);
         let rows = rows(stretch, noise, columns, &origin, &tests);
         Linearised { tests, width: columns.len() + 6, rows, terms, origin }
+    }
+
+    /// The same with the covariance of the equations.
+    pub(crate) fn with_covariance(
+        stretch: &Stretch,
+        noise: &[Vector3<f64>],
+        columns: &[Column],
+        origin: Unknowns,
+        tests: TestFunctions,
+    ) -> (Self, Covariance) {
+        let terms = terms_of(columns, &origin, stretch);
+        let (rows, covariance) = both(
+            noise.len() > BESIDE,
+            || rows(stretch, noise, columns, &origin, &tests),
+            || Covariance::new(stretch, noise, &terms, &tests),
+        );
+        (Linearised { tests, width: columns.len() + 6, rows, terms, origin }, covariance)
     }
 
     /// The covariance of the equations, which were linearised at the samples of `stretch` less their `noise`.

@@ -10,8 +10,9 @@ use crate::solve::weak_estimate::{Convergence, WeakEstimate};
 use crate::thresholds::radius::{
     CANDIDATES, COMPARED, DENSE, LONG, OF_SHORT, PART, PILOT_SAMPLES, ROOM, SHORTEST, SPARED,
 };
-use crate::thresholds::rounds::{RESTLESS, STANDS, TORQUES};
+use crate::thresholds::rounds::{BESIDE, RESTLESS, STANDS, TORQUES};
 use crate::thresholds::test_functions::{ROUNDED, SAMPLES_PER_TEST};
+use polhode::record::both;
 
 /// Why there is no weak estimate.
 pub(crate) enum Failure {
@@ -94,8 +95,7 @@ impl<'a> Judged<'a> {
         compared: &Rounds<'_>,
     ) -> Option<Self> {
         let rounds = Rounds::new(stretches, radius, columns, compared.at.clone())?.with_levels(compared);
-        let parts = rounds.linearise();
-        let whitened = rounds.whiten(&parts)?;
+        let (parts, whitened) = rounds.whiten()?;
         let stacked = rounds.stack(&whitened, variance);
         let information = stacked.information();
         // a misfit counts as noise, so that radii too short for the sampling or too long for the torques lose
@@ -124,9 +124,15 @@ fn least_covariance(
     compared: &Rounds<'_>,
     spared: f64,
 ) -> f64 {
-    let each = radii.iter().filter_map(|&radius| Judged::new(stretches, radius, columns, variance, compared));
-    let mut judged: Vec<Judged<'_>> = each.collect();
-    judged.sort_by(|a, b| a.least().total_cmp(&b.least()));
+    let every_other = |first: usize| {
+        let each = radii.iter().skip(first).step_by(2);
+        let judged = each.filter_map(|&radius| Judged::new(stretches, radius, columns, variance, compared));
+        judged.collect::<Vec<Judged<'_>>>()
+    };
+    let samples: usize = stretches.iter().map(|s| s.times.len()).sum();
+    let (mut judged, others) = both(samples > BESIDE, || every_other(0), || every_other(1));
+    judged.extend(others);
+    judged.sort_by(|a, b| a.least().total_cmp(&b.least()).then(a.radius.total_cmp(&b.radius)));
     let mut traces: Vec<(f64, f64)> = Vec::new();
     let mut best = (f64::INFINITY, radii[radii.len() / 2]);
     for judged in judged {

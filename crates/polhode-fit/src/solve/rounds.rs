@@ -2,10 +2,11 @@
 
 use crate::thresholds::radius::PART;
 use crate::thresholds::rounds::{
-    BOUNDLESS, CLEAR, DESCENT, FALL, FIRST, FULL_ROUNDS, KEPT, NEGLIGIBLE, REACHED, RELAXED, ROUNDS, SAME,
-    SHARES, SIGNIFICANT_GAIN, STILL, TORQUES,
+    BESIDE, BOUNDLESS, CLEAR, DESCENT, FALL, FIRST, FULL_ROUNDS, KEPT, NEGLIGIBLE, REACHED, RELAXED, ROUNDS,
+    SAME, SHARES, SIGNIFICANT_GAIN, STILL, TORQUES,
 };
 use nalgebra::Vector3;
+use polhode::record::both;
 
 use crate::columns::column::{Column, Unknowns};
 use crate::physical::coordinates::{Coordinates, Form, eigen, tensor};
@@ -164,27 +165,30 @@ impl<'a> Rounds<'a> {
         Some(self)
     }
 
-    /// The equations of each stretch at the samples so far.
-    pub(crate) fn linearise(&self) -> Vec<Linearised> {
+    /// The equations of each stretch at the samples so far, with their covariances.
+    fn with_covariances(&self) -> (Vec<Linearised>, Vec<Covariance>) {
         let each = self.used.iter().zip(&self.noise);
-        each.map(|((_, s, tests), n)| Linearised::new(s, n, self.columns, self.at.clone(), tests.clone()))
-            .collect()
+        let of = |((_, s, tests), noise): (&(_, &Stretch, TestFunctions), &Vec<_>)| {
+            Linearised::with_covariance(s, noise, self.columns, self.at.clone(), tests.clone())
+        };
+        each.map(of).unzip()
     }
 
-    /// The covariances of these equations.
-    fn covariances(&self, parts: &[Linearised]) -> Vec<Covariance> {
-        let each = self.used.iter().zip(&self.noise).zip(parts);
-        each.map(|(((_, s, _), noise), part)| part.covariance(s, noise)).collect()
-    }
-
-    /// These equations whitened.
-    pub(crate) fn whiten(&self, parts: &[Linearised]) -> Option<Vec<Whitened>> {
-        let each = self.used.iter().zip(&self.noise).zip(parts).zip(&self.levels);
-        let whitened = each.map(|((((_, s, _), noise), part), levels)| {
-            let factor = part.covariance(s, noise).into_factor(*levels)?;
+    /// These equations, and what they are whitened.
+    pub(crate) fn whiten(&self) -> Option<(Vec<Linearised>, Vec<Whitened>)> {
+        let (parts, covariances) = self.with_covariances();
+        let each = parts.iter().zip(covariances).zip(&self.levels);
+        let whitened = each.map(|((part, covariance), levels)| {
+            let factor = covariance.into_factor(*levels)?;
             Some(part.whitened(factor, *levels, self.driven.then_some(self.columns)))
         });
-        whitened.collect()
+        let whitened = whitened.collect::<Option<_>>()?;
+        Some((parts, whitened))
+    }
+
+    /// Whether parts of a round are worked out side by side.
+    fn is_beside(&self) -> bool {
+        self.noise.iter().map(Vec::len).sum::<usize>() > BESIDE
     }
 
     pub(crate) fn stack(&self, whitened: &[Whitened], variance: f64) -> Stacked {
@@ -204,8 +208,7 @@ impl<'a> Rounds<'a> {
     ///
     /// A ridge as weak as one reading keeps x finite before it is known that the record determines it.
     pub(crate) fn round(&mut self, variance: f64, full: bool) -> Option<(f64, f64)> {
-        let parts = self.linearise();
-        let whitened = self.whiten(&parts)?;
+        let (parts, whitened) = self.whiten()?;
         let stacked = self.stack(&whitened, variance);
         let next = match &self.pull {
             Some(pull) => stacked.pulled(pull)?,
@@ -279,8 +282,7 @@ impl<'a> Rounds<'a> {
         let several = self.used.len() > 1;
         let mut moved = f64::INFINITY;
         for round in 0..DESCENT {
-            let parts = self.linearise();
-            let covariances = self.covariances(&parts);
+            let (parts, covariances) = self.with_covariances();
             if round == 0 && !self.resumed {
                 let boundless = |part: &Covariance| {
                     let (noise, torque) = part.mean_variances();
@@ -296,21 +298,26 @@ impl<'a> Rounds<'a> {
             let whitened: Vec<Whitened> = whitened.collect::<Option<_>>()?;
             let stacked = self.stack(&whitened, variance);
             let next = stacked.ridge(variance)?;
-            moved = self.advance(&parts, &whitened, &stacked, &next, 1.0, variance);
             let fitted = (stacked.rows.saturating_sub(5).max(1)) as f64 / stacked.rows.max(1) as f64;
+            let (before, is_first) = (self.levels.clone(), round == 0 && !self.resumed);
+            let target = |((part, covariance), levels): ((&Linearised, &Covariance), &Levels)| match noise {
+                Noise::White => Some(Levels::WHITE),
+                Noise::Given(torque) => Some(Levels { torque, ..Levels::WHITE }),
+                Noise::Fitted => {
+                    let (choice, last) = (Choice { white: several }, (!is_first).then_some(*levels));
+                    likeliest(covariance, &part.residuals(&next), variance, fitted, choice, last)
+                }
+            };
+            let targets;
+            (moved, targets) = both(
+                self.is_beside(),
+                || self.advance(&parts, &whitened, &stacked, &next, 1.0, variance),
+                || parts.iter().zip(&covariances).zip(&before).map(target).collect::<Option<Vec<Levels>>>(),
+            );
             let mut changed = false;
-            for ((part, covariance), levels) in parts.iter().zip(&covariances).zip(&mut self.levels) {
+            for ((covariance, levels), target) in covariances.iter().zip(&mut self.levels).zip(targets?) {
                 let (own, torque) = covariance.mean_variances();
                 let floor = FALL * levels.torque;
-                let target = match noise {
-                    Noise::White => Levels::WHITE,
-                    Noise::Given(torque) => Levels { torque, ..Levels::WHITE },
-                    Noise::Fitted => {
-                        let choice = Choice { white: several };
-                        let last = (round > 0 || self.resumed).then_some(*levels);
-                        likeliest(covariance, &part.residuals(&next), variance, fitted, choice, last)?
-                    }
-                };
                 let mut new = Levels { torque: target.torque.max(floor), ..target };
                 if new.torque * torque < NEGLIGIBLE * own * new.white && target.torque < new.torque {
                     new.torque = target.torque;
@@ -342,9 +349,9 @@ impl<'a> Rounds<'a> {
     }
 
     pub(crate) fn finish(self, variance: f64, moved: f64) -> Option<WeakEstimate> {
-        let parts = self.linearise();
+        let (parts, covariances) = self.with_covariances();
         let (mut whitened, mut determinants) = (Vec::new(), Vec::new());
-        for ((part, covariance), levels) in parts.iter().zip(self.covariances(&parts)).zip(&self.levels) {
+        for ((part, covariance), levels) in parts.iter().zip(covariances).zip(&self.levels) {
             let white = (*levels != Levels::WHITE).then(|| covariance.factor(Levels::WHITE));
             let driven = self.driven.then_some(self.columns);
             let own = part.whitened(covariance.into_factor(*levels)?, *levels, driven);
@@ -508,8 +515,7 @@ mod tests {
         for (variance, is_half) in [(1e-6, true), (1e-3, false)] {
             let of = |full: bool| {
                 let mut rounds = Rounds::new(&stretches, 1.0, &columns, at.clone()).unwrap();
-                let parts = rounds.linearise();
-                let stacked = rounds.stack(&rounds.whiten(&parts).unwrap(), variance);
+                let stacked = rounds.stack(&rounds.whiten().unwrap().1, variance);
                 let (moved, misfit) = rounds.round(variance, full).unwrap();
                 assert_eq!((misfit, misfit >= TORQUES), (stacked.excess(variance), is_half));
                 (rounds, stacked.root, moved, misfit)
