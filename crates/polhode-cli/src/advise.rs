@@ -34,9 +34,9 @@ const EXAMPLES: &str = "Examples:
 /// Which method and step for this body, time and accuracy, and what it costs
 ///
 /// Every method runs on the body itself for a short time, in shorter and shorter steps, and is compared with the exact motion, or with
-/// two runs of different methods that agree. Those that would be quickest run to the end. The first row is the advice; `propagate`
-/// takes its method, step and tolerance as they stand. Times are of this machine; the search takes at most two seconds and ten times
-/// the run that it finds.
+/// two runs of different methods that agree. The quickest candidates then run to the end. The first row is the advice; `propagate`
+/// takes its method, step and tolerance as they are. Times are those of this machine. The search usually ends within two seconds
+/// plus ten times the run that it advises.
 ///
 /// Columns: predicted_error and predicted_energy_error, the largest errors up to T; factor, by which predicted_error may be wrong;
 /// predicted_cost, processor time, s; times_longer, that time over the least; whole_time (csv and json), whether the runs behind the
@@ -58,14 +58,14 @@ pub(crate) struct Advise {
     /// Largest processor time allowed, s
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true, help_heading = "Demand")]
     budget: Option<f64>,
-    /// Method to leave out, repeatable; `exact` stands for the closed form and the methods that step along it
+    /// Method to leave out; repeatable. `exact` leaves out the closed form and all methods that use it in each step
     #[arg(long, value_name = "METHOD", help_heading = "Demand")]
     exclude: Vec<String>,
     /// Time of the start, s, or with a unit, for forces that depend on time
     #[arg(long, value_name = "t0", value_parser = duration, allow_hyphen_values = true, default_value = "0", help_heading = "Demand")]
     start_time: f64,
     /// Run the advice to T and compare its attitude with the exact motion, or with two runs of different methods that agree; exit code
-    /// 1 if the attitude error is larger than asked for. The energy error stays the predicted one
+    /// 1 if the attitude error is larger than asked for. The energy error is not checked
     #[arg(long, help_heading = "Output")]
     check: bool,
     /// Show every method that meets the demand, not only the quickest ten

@@ -16,12 +16,12 @@ const EXAMPLES: &str = "Examples:
 
 /// List the catalogue of bodies: moments, spin at the start, source
 ///
-/// What the command line takes as --body NAME. Free bodies come first, then tops with a fixed point and a weight. Moments are
-/// in kg m^2, or ratios where no more is known.
+/// Other commands take these as --body NAME. Free bodies come first, then tops with a fixed point and a weight. Moments are in
+/// kg m^2, or ratios where only these are known.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Bodies {
-    /// Show everything that is known of this body
+    /// Show all that is known of this body
     name: Option<String>,
     /// How rows are printed [default: table on a terminal, csv otherwise]
     #[arg(long, value_enum)]

@@ -37,7 +37,8 @@ const EXPERIMENT_EXAMPLES: &str = "Examples:
 
 /// Accurate long-time rotation of rigid bodies
 ///
-/// Exit code 0: success; 1: a claim, fit or check failed; 2: unusable input.
+/// Exit code 0: success; 1: a claim, fit or check failed; 2: unusable input. `polhode COMMAND --help` explains a command with all its
+/// options, and `polhode COMMAND -h` those that a first use needs.
 #[derive(Parser)]
 #[command(name = "polhode", version, max_term_width = 80, after_help = EXAMPLES)]
 struct CommandLine {

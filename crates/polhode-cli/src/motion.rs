@@ -45,32 +45,33 @@ const EXAMPLES: &str = "Examples:
 ///                        precession_rate is 2 pi over it
 ///   combined_period      P_1 of light curves: 1/P_1 = 1/P_phi + 1/P_psi in
 ///                        long-axis mode, 1/P_phi - 1/P_psi in short-axis mode
-///   nutation_period      the axis towards L and back
+///   nutation_period      the axis from its least angle to L back to the least
 ///   spin                 2E/|L|, the component of omega along L
 ///   separatrix_distance  (|L|^2/2E - I_middle)/I_middle, negative in long-axis
 ///                        mode
 ///   energy_ratio         energy over the least energy with this L
-///   damping              with inner friction the energy above that of the steady
-///                        spin falls by a factor of e in this time over the loss
+///   damping              time in which inner friction with the loss 1 lets the
+///                        energy above that of the steady spin fall by a factor
+///                        of e; for a smaller loss divide by it
 ///   stability            of a steady spin, with the growth_rate of deviations
 ///   theta_min, _max      least and largest angle between the axis and L
 ///   lambda, beta         longitude and latitude of L in space
 ///   phi, psi             Euler angles at the start (z-x-z, z along L and along
 ///                        the axis)
-///   frame, epoch         the axes of space, by --frame or of a catalogued body
-///                        (unknown: its attitude at the start is the identity),
-///                        and the date of its start
+///   frame, epoch         axes of space, from --frame or from the catalogue
+///                        (unknown: the attitude at the start is the identity),
+///                        and the date of the start
 ///
-/// Of a body with wheels the table has instead:
+/// For a body with wheels the table has instead:
 ///
-///   period               after which the angular velocity is what it was
-///   turn_per_period      of the body about L after that
-///   energy               1/2 w.I w, and that of the unstable steady spins with
-///                        the same |L|: a motion of theirs is on a separatrix
-///   steady_spins         how many have this |L|; --steady lists them
+///   period               period of the angular velocity in the body
+///   turn_per_period      angle of the turn about L in one period
+///   energy               1/2 w.I w; the energies of the unstable steady spins
+///                        with the same |L| are those of the separatrices
+///   steady_spins         their number with this |L|; --steady lists them
 ///
-/// csv and json have angles in rad and times in s. A start with a known frame is
-/// turned to another by --to-frame.
+/// csv and json have angles in rad and times in s. --to-frame gives the angles in
+/// other axes of space.
 #[derive(Args, Clone, Debug)]
 #[command(verbatim_doc_comment, override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Motion {
@@ -80,7 +81,7 @@ pub(crate) struct Motion {
     wheels: WheelArguments,
     #[command(flatten)]
     pub(crate) start: StartArguments,
-    /// With wheels: list the steady spins with the |L| of the start, their energy and stability, alone
+    /// With wheels: list only the steady spins with the |L| of the start, with energy and stability
     #[arg(long, help_heading = "Output")]
     steady: bool,
     /// How the quantities are printed [default: table on a terminal, csv otherwise]

@@ -55,7 +55,9 @@ pub enum ExperimentCommand {
     },
     /// Run experiments and write their results to OUT/<scale>/<experiment>/
     ///
-    /// Without a name: the main ones, in about a minute. They answer which methods stay near the exact motion, how much work an accuracy costs, and how close a fitted tensor comes to the Cramer-Rao bound. One screen says what was found, and OUT/<scale>/index.html shows everything. With names: the full tables of these experiments.
+    /// Without a name the main experiments run. They tell which methods stay near the exact motion, how much work an accuracy costs,
+    /// and how close a fitted tensor comes to the Cramer-Rao bound. What they found is printed on one screen, and OUT/<scale>/index.html has all tables. With names the full
+    /// tables of these experiments are printed.
     #[command(after_help = EXAMPLES)]
     Run {
         /// Names of experiments, or all [default: the main ones]
@@ -66,19 +68,19 @@ pub enum ExperimentCommand {
         /// Folder for results
         #[arg(long, default_value = "results")]
         out: PathBuf,
-        /// Write all results as one page, which needs no network: a file that ends in .html [default without names: OUT/<scale>/index.html]
+        /// Write all results as one page to this .html file, which needs no network [default without names: OUT/<scale>/index.html]
         #[arg(long, value_name = "FILE")]
         report: Option<PathBuf>,
-        /// Print the full tables of the main experiments, or of all
+        /// Print full tables also where no experiment is named
         #[arg(long)]
         tables: bool,
-        /// Leave out experiments that this program, from an unchanged commit, has finished there
+        /// Leave out experiments whose results are in the folder already, if this program, built from the same commit, has made them
         #[arg(long, conflicts_with = "report")]
         resume: bool,
     },
     /// Run experiments and compare every number with the committed ones
     ///
-    /// Compares with files of the repository, in whose root it runs. The numbers of smoke scale are in experiments/tests/golden/smoke, those of paper scale in experiments/results. Times are
+    /// Run it in the root of the repository. The committed numbers of smoke scale are in experiments/tests/golden/smoke, those of paper scale in experiments/results. Times are
     /// not compared. Exit code 1 if a cell differs or a claim fails; the first differences are listed with file, row, column and
     /// both values.
     #[command(hide = true, after_help = CHECK_EXAMPLES)]
@@ -92,17 +94,17 @@ pub enum ExperimentCommand {
         /// Root of the repository, where the command runs elsewhere
         #[arg(long, default_value = ".")]
         root: PathBuf,
-        /// Replace the committed numbers of smoke scale by the new ones; of paper scale, `polhode experiment publish --from` does
+        /// Replace the committed numbers of smoke scale by the new ones (for paper scale use `polhode experiment publish --from`)
         #[arg(long)]
         accept: bool,
-        /// Keep the runs of paper scale in this folder, and compare those that this program, from an unchanged commit, has finished there without running them again
+        /// Keep the runs of paper scale in this folder; results that are there already, made by this program from the same commit, are compared without a new run
         #[arg(long, value_name = "DIR", conflicts_with = "accept")]
         resume: Option<PathBuf>,
     },
     /// Write tables of the committed results of paper scale into README.md,
     /// the pages of docs and paper/generated
     ///
-    /// Works on files of the repository, in whose root it runs: the results are in experiments/results.
+    /// Run it in the root of the repository, whose results are in experiments/results.
     #[command(hide = true, after_help = PUBLISH_EXAMPLES)]
     Publish {
         /// Root of the repository, where the command runs elsewhere

@@ -42,11 +42,11 @@ const EXAMPLES: &str = "Examples:
 
 /// Attitude from the readings of a gyroscope, with an error budget
 ///
-/// Between two samples the rates are a polynomial through the samples around, and the turn is the exponential of its Magnus
-/// series. Order and number of samples are chosen from the record, with its noise. Columns: t, q_w, q_x, q_y, q_z (body to space,
-/// scalar first), attitude_sigma (standard deviation of each component of the attitude error by all causes, rad), truncation
-/// (estimated error of the method, rad). The start counts as exact. Exit code 1: the attitude is lost, its standard deviation is
-/// above 1 rad; or most of the attitudes are off those of --against by more than twice the 95 % of their budget.
+/// Between two samples the rates are interpolated by a polynomial through the neighbouring samples, and the turn is the exponential of
+/// its Magnus series. Order and number of samples are chosen from the record and its noise. Columns: t, q_w, q_x, q_y, q_z (body to
+/// space, scalar first), attitude_sigma (standard deviation of each component of the attitude error from all causes, rad), truncation
+/// (estimated error of the method, rad). The start counts as exact. Exit code 1: the standard deviation of an attitude exceeds 1 rad,
+/// or most attitudes differ from those of --against by more than twice their 95 % error bound.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Attitude {
@@ -64,21 +64,21 @@ pub(crate) struct Attitude {
     rule: RuleArguments,
     #[command(flatten)]
     sensor: SensorArguments,
-    /// A free body in sensor axes: the attitudes are those of its exact motion that fits all rates best, and a last column integrated has the angle to the attitude by the readings alone, rad
+    /// A free body, its tensor in sensor axes: the attitudes are then those of its exact motion that fits all rates best. A last column integrated has the angle to the attitude that the readings alone give, rad
     #[arg(long, value_name = "NAME|FILE[:LINK]", help_heading = "Method")]
     body: Option<String>,
-    /// Compare with the attitudes of this file at the same times, body to space unless its names say otherwise: a last column
-    /// attitude_error, rad
+    /// Compare with the attitudes of this file at the same times, body to space unless the names of its columns say otherwise; adds a
+    /// last column attitude_error, rad
     #[arg(long, value_name = "REFERENCE.csv", help_heading = "Output")]
     against: Option<PathBuf>,
-    /// Also print Euler angles in this sequence, intrinsic, such as zyx: phi, theta, psi, rad, of the attitude body to space
+    /// Also print the intrinsic Euler angles of the attitude (body to space) in this sequence, such as zyx: phi, theta, psi, rad
     #[arg(long, value_name = "SEQUENCE", value_parser = sequence, help_heading = "Output")]
     euler: Option<EulerSequence>,
     /// Order of the columns of the quaternion
     #[arg(long, value_enum, default_value_t = Order::Wxyz, help_heading = "Output")]
     quaternion: Order,
-    /// What an attitude takes where: body components to space, or space components to body (the quaternion of JPL's product), in columns
-    /// q_space_to_body_w, ..., whose names every command reads
+    /// Direction of the attitudes: from body to space components, or from space to body components (the quaternion of JPL's product).
+    /// The latter are in columns q_space_to_body_w, ..., which every command reads in this direction
     #[arg(long, value_enum, default_value_t = Direction::BodyToSpace, help_heading = "Output")]
     direction: Direction,
     /// How rows are printed: table on a terminal, csv otherwise

@@ -14,10 +14,10 @@ pub(super) struct RuleArguments {
     /// Order of the Magnus series
     #[arg(long, value_enum, default_value_t = Order::Auto)]
     order: Order,
-    /// Samples that a polynomial goes through, an even number [default: chosen from the record with its noise]
+    /// Number of samples that a polynomial goes through, even [default: chosen from the record and its noise]
     #[arg(long, value_name = "N", allow_hyphen_values = true)]
     samples: Option<usize>,
-    /// A rule of other programs, in place of the Magnus series
+    /// Use a rule of other programs instead of the Magnus series
     #[arg(long, value_enum, conflicts_with_all = ["order", "samples"])]
     rule: Option<RivalName>,
 }
@@ -37,11 +37,11 @@ enum Order {
 enum RivalName {
     /// Each rate is held to the next sample
     Hold,
-    /// Straight lines between the rates, with a coning term
+    /// Linear interpolation of the rates, with a coning term
     Trapezoid,
     /// Coning summed over four samples, as PX4 does
     TwoSpeed,
-    /// Runge and Kutta on straight lines
+    /// Runge-Kutta method on linearly interpolated rates
     RungeKutta,
 }
 

@@ -18,7 +18,7 @@ pub(super) struct SensorArguments {
     /// Scale error of each axis: 0.01 for one per cent [default: none]
     #[arg(long, value_name = "SIGMA", value_parser = not_negative, allow_hyphen_values = true)]
     scale_error: Option<f64>,
-    /// Error of each time stamp, s; where the noise is found in the record it is part of that [default: none]
+    /// Error of each time stamp, s; a noise that is found in the record already contains it [default: none]
     #[arg(long, value_name = "SIGMA", value_parser = not_negative, allow_hyphen_values = true)]
     stamps: Option<f64>,
 }

@@ -17,13 +17,13 @@ pub(super) struct ReadingArguments {
     table: TableArguments,
     #[command(flatten)]
     attitude: AttitudeArguments,
-    /// State the axes of the angular velocity [default: found from the rows]
+    /// Axes of the angular velocity [default: found from the rows]
     #[arg(long, value_enum, help_heading = "Reading")]
     omega_frame: Option<Axes>,
-    /// State the axes of the angular momentum [default: found from the rows]
+    /// Axes of the angular momentum [default: found from the rows]
     #[arg(long, value_enum, help_heading = "Reading")]
     momentum_frame: Option<Axes>,
-    /// State the unit of the angular velocity: rad/s, deg/s or rpm
+    /// Unit of the angular velocity: rad/s, deg/s or rpm
     #[arg(long, value_name = "UNIT", value_parser = rate_unit, help_heading = "Reading")]
     rate_unit: Option<RateUnit>,
     /// The moments may belong to the axes in any order

@@ -42,18 +42,18 @@ const EXAMPLES: &str = "Examples:
 /// Whether a trajectory of another program is right, its convention and its error
 ///
 /// Reads CSV and other tables with a time and an attitude (quaternion, matrix, Euler angles, MRP), an angular velocity or an
-/// angular momentum in columns of any common names, the qpos and qvel of MuJoCo, and LAMMPS dumps; several bodies by a column
-/// id. Every convention that the columns allow is tried; the one in which the rows obey the equations of motion is kept. Without
+/// angular momentum, in columns of any common names; qpos and qvel of MuJoCo; LAMMPS dumps. A column id tells several bodies apart.
+/// Every convention that the columns allow is tried, and the one in which the rows obey the equations of motion is kept. Without
 /// a body its moments are fitted up to a factor. The speed of a wheel is that at the first row.
 ///
-/// right: every row and every column is within --tolerance of a motion of the body, within what its own digits tell, or within
-/// the noise that --noise declares. A record that agrees within a noise that nobody declares is undecided. If the rows contradict
-/// a direction, a frame, a unit, the axes of roll, pitch and yaw, or the order of the moments that a name or an option states, the
-/// record is wrong. Beside a golden trajectory it is undecided unless every row of one of the two is at a time of the other.
+/// right: every row and every column that is read agrees with one motion of the body, within --tolerance, within the precision of
+/// its digits, or within the noise that --noise declares. A record that agrees only within a noise that is not declared is
+/// undecided. A record that contradicts what a name or an option states (a direction, a frame, a unit, the axes of roll, pitch and
+/// yaw, the order of the moments) is wrong. With --against the verdict is undecided unless all times of one file are in the other.
 ///
 /// suspect: kinematics-sign, omega-frame, transposed, moments-order, degrees, angles-order, gyroscopic-term-missing,
-/// gyroscopic-sign, integrator:NAME, discontinuity, other-body, other-torque, other-wheel or none. If the integrator is to blame, a method and a
-/// step that would do are named, if they are found within two seconds.
+/// gyroscopic-sign, integrator:NAME, discontinuity, other-body, other-torque, other-wheel or none. If it is the integrator, the
+/// report also names a method and a step that are accurate enough, unless the search for them takes more than two seconds.
 ///
 /// Exit code 0: right; 1: wrong or undecided.
 #[derive(Args, Clone, Debug)]
@@ -71,19 +71,19 @@ pub(crate) struct Audit {
     forces: ForceArguments,
     #[command(flatten)]
     reading: ReadingArguments,
-    /// Audit this body of the column id alone
+    /// Audit only this body of the column id
     #[arg(long, value_name = "NAME", help_heading = "Reading")]
     id: Option<String>,
-    /// Largest error of a record that is right, rad and relative, at most 0.1
+    /// Largest error that a right record may have, rad and relative, at most 0.1
     #[arg(long, value_name = "E", value_parser = tolerance, allow_hyphen_values = true, default_value = "1e-6", help_heading = "Verdict")]
     tolerance: f64,
-    /// Noise that the record has, standard deviations of a component of the attitude, rad, and of the angular velocity, rad/s, each 0 where the record has no such columns; a noisy record is undecided without it
+    /// Noise of the record, without which a noisy record is undecided: standard deviations of a component of the attitude, rad, and of the angular velocity, rad/s; 0 where the record has no such columns
     #[arg(long, value_name = "ANGLE[,RATE]", value_parser = noise, allow_hyphen_values = true, help_heading = "Verdict")]
     noise: Option<Noise>,
-    /// Compare with this golden trajectory too, of whose body the record then is
+    /// Compare also with this reference trajectory, such as one of --golden; its header names the body
     #[arg(long, value_name = "GOLDEN.csv", conflicts_with_all = ["BodyArguments", "weight_moment"], help_heading = "Verdict")]
     against: Option<PathBuf>,
-    /// Write golden trajectories and programs that check against them into this folder
+    /// Write reference trajectories into this folder, with programs that compare others with them
     #[arg(long, value_name = "DIR", conflicts_with_all = ["record", "against", "BodyArguments", "id", "tolerance", "noise", "figure", "report", "format", "out",
         "columns", "time_unit", "sample_rate", "quaternion", "attitude", "euler", "angle_unit", "omega_frame", "momentum_frame", "rate_unit", "any_order",
         "wheels", "weight_moment", "gravity_gradient", "orbit", "orbit_plane", "orbit_table", "torque_body", "torque_space", "drag"], help_heading = "Output")]

@@ -47,11 +47,11 @@ const LOOKS: u32 = 64;
 
 /// Errors, cost and flips of methods on a body, against its true motion
 ///
-/// The true motion is the closed form of a free body or a symmetric top; of any other body two runs in double-double, as long as
-/// they agree. attitude_error: angle at the end, rad; an attitude that is more than 1 rad off counts as lost. evaluations: number
-/// of elementary operations of the method: forces, turns, exact free motions, solutions of implicit equations. seconds:
-/// processor time of the run without the check of its errors. rk4_steps: that time over the time of a step of rk4 on this
-/// body, measured side by side.
+/// The true motion is the closed form where there is one, else two runs in double-double, as long as they agree. Columns:
+/// attitude_error, angle to the true attitude at the end, rad, where more than 1 rad counts as lost; evaluations, number of
+/// elementary operations of the method (forces, turns, exact free motions, solutions of implicit equations); seconds, processor
+/// time of the run without the check of its errors; rk4_steps, this time over that of a step of rk4 on the same body, measured
+/// side by side.
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Compare {
@@ -60,7 +60,7 @@ pub(crate) struct Compare {
     /// Methods, separated by commas: BASE[:ARGUMENT][@SCHEME][+phase] as in kick-drift@srkn-6b; see `polhode methods`
     #[arg(long, value_name = "A,B,...", value_delimiter = ',', required = true, help_heading = "Methods")]
     methods: Vec<String>,
-    /// Steps of the methods, s, separated by commas; a whole number of each leads to T
+    /// Steps of the methods, s, separated by commas; T must be a whole number of each
     #[arg(long, value_name = "h1,h2,...", value_parser = positives, allow_hyphen_values = true, help_heading = "Methods")]
     steps: Option<Positives>,
     /// Tolerances of the methods that choose their steps (taylor, dop853, tsit5) [default: that of the method]
@@ -72,21 +72,20 @@ pub(crate) struct Compare {
     /// Time of the start: s, or with a unit
     #[arg(long, value_name = "t0", value_parser = duration, allow_hyphen_values = true, default_value = "0", help_heading = "Times")]
     start_time: f64,
-    /// A trajectory of another program as one more row: any file with an attitude that `polhode audit` reads, in the convention
-    /// that its rows show; with an angular velocity also its errors of energy and momentum and its flips, at the rows of the
-    /// file: flips are counted from row to row, of the file and of the true motion, beyond what the rates are off, and rows far
-    /// apart miss flips of both. Rates that contradict the attitudes are told, and are its status. The motion of another body is
-    /// refused; repeatable
+    /// Add a trajectory of another program as a row; repeatable. The file is one with attitudes that `polhode audit` reads, in the
+    /// convention that its rows show; the motion of another body is refused. Where it has angular velocities, the row also has its
+    /// errors of energy and momentum and its flips, counted from row to row: rows far apart miss flips. Rates that contradict the
+    /// attitudes are reported as status
     #[arg(long, value_name = "FILE.csv", help_heading = "Methods")]
     trajectory: Vec<PathBuf>,
     #[command(flatten)]
     table: TableArguments,
-    /// State the place of the scalar in the quaternions of trajectories [default: as named, else found from the rows]
+    /// Place of the scalar in the quaternions of trajectories [default: as named, else found from the rows]
     #[arg(long, value_enum, requires = "trajectory", help_heading = "Reading")]
     quaternion: Option<Order>,
-    /// Predict the attitude error at the end from a short run, of methods that keep energy and |m| of a free body within bounds,
-    /// without forces or under weak ones: how fast it grows as a shift in time along the polhode (s/s) and as a twist about L
-    /// (rad/s). Oscillations and rounding are not in it
+    /// Predict the attitude error at the end from a short run: how fast it grows as a shift in time along the polhode (s/s) and as
+    /// a twist about L (rad/s). For methods that keep energy and |m| of a free body within bounds, without forces or under weak
+    /// ones. Oscillations and rounding are not included
     #[arg(long, help_heading = "Output")]
     phase: bool,
     /// Draw attitude error against processor time to this file

@@ -26,14 +26,13 @@ const EXAMPLES: &str = "Examples:
 
 /// Reduce the shards of an ensemble to the results of one run
 ///
-/// The shards that `polhode ensemble --shard K/N` has written stand in DIR/shards. They must be all of one run: of the same
-/// specification, seed, version and number of shards, with every file as its run wrote it (the run.toml beside it has the
-/// SHA-256). The results in DIR are those of the run without shards, to the last bit, and their run.toml has the SHA-256 of
-/// each; the shards stay where they are, and may be removed then.
+/// `polhode ensemble --shard K/N` writes its shards to DIR/shards. All shards of one run must be there: with the same specification,
+/// seed, version and number of shards, and with unchanged files (the run.toml beside them has each SHA-256). The results in DIR are
+/// those of the run without shards, to the last bit, and their run.toml has the SHA-256 of each. The shards may then be removed.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Gather {
-    /// Folder of the ensemble, which was its --out
+    /// Folder that --out of `polhode ensemble` named
     #[arg(value_name = "DIR")]
     folder: PathBuf,
     /// Threads [default: as many as there are cores]

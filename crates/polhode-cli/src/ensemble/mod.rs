@@ -40,10 +40,10 @@ const AFTER_HELP: &str = "SPEC.toml:
             scalar first; rate_unit and angle_unit, such as \"deg/s\" and
             \"deg\", hold for [spread] and the members too; or of a tumbling
             body periods, mode, pole, phases, reversed; epoch and time_scale
-            make dates of the times in [run]
+            turn the times in [run] into dates
   [spread]  standard deviations, one or three each: omega, rad/s; attitude,
-            rad, about the body axes; moments, relative
-            of elements one or two each: periods, pole, phases, ratios
+            rad, about the body axes; moments, relative; for a tumbling body
+            one or two each: periods, pole, phases, ratios
   [spread.covariance]  omega 3x3, attitude 3x3, inertia 6x6, or joint 12x12;
                        elements 8x8
   [spread.range]       omega, attitude, moments: [[low, high], ...]; \"all\"
@@ -51,13 +51,13 @@ const AFTER_HELP: &str = "SPEC.toml:
   [observer]    direction = [lambda, beta], or directions, one for each time
   [run]     members, seed, method, step, tolerance, start_time, times,
             times_file and times_column, or until and every;
-            errors = false leaves energy and L unwatched
+            errors = false leaves out the errors of energy and L
   [[body.wheels]]  axis, inertia, speed = \"3000rpm\" at the start, held;
             free = true, or torque, from, until of a motor
   [force]   weight_moment, gravity_gradient or orbit, orbit_plane or
             orbit_table, gm; torque_body, torque_space, drag
-  [event]   first = \"flip\", or another event of propagate --event, up to the
-            last time; every: between looks
+  [event]   first = \"flip\", or another event of propagate --event;
+            every, the step of its search, which ends with the last time
   [output]  arrays = [\"attitudes\", \"omegas\"]
 
 Examples:
@@ -68,15 +68,16 @@ Examples:
 
 /// Many bodies from uncertain starts: mean attitude and dispersion over time
 ///
-/// Members are drawn from standard deviations, covariances or ranges of start and inertia, or listed in a CSV (members_file).
-/// Elements of tumbling bodies are drawn, too, about one solution of a light curve or several. Tensors that no body has are drawn again, so the spread of the inertia ends at the triangle inequalities. Member k is the
-/// same in any division of the work. DIR gets summary.csv, dispersion.csv, dispersion.svg, failures.csv,
-/// attitudes.npy (times x members x 4), omegas.npy (times x members x 3) and run.toml; with an [event] passages.csv, when it
-/// first happens to each member. Of free bodies in exact motion the spread to first order is printed beside that of the members.
+/// Members are drawn from standard deviations, covariances or ranges of start and inertia, or listed in a CSV (members_file). The
+/// elements of a tumbling body are drawn about one or several solutions of its light curve. A tensor that violates the triangle
+/// inequalities is drawn again. Member k is the same in any division of the work. DIR gets summary.csv, dispersion.csv,
+/// dispersion.svg, failures.csv, attitudes.npy (times x members x 4), omegas.npy (times x members x 3) and run.toml; with an [event]
+/// also passages.csv, the time at which it first happens to each member. For free bodies in exact motion the spread to first order is
+/// printed beside that of the members.
 ///
-/// With --shard K/N, or in a Slurm array or under an MPI launcher, only the K-th of N parts of the members is run; of processes that
-/// srun starts side by side each needs --shard. Its results, a shard, go to DIR/shards, and `polhode gather DIR` makes those
-/// of all members. A shard that is finished is not run again.
+/// With --shard K/N, in a Slurm array or under an MPI launcher, only part K of N of the members is run. Processes that srun starts
+/// side by side need --shard. The results of a part, a shard, go to DIR/shards, and `polhode gather DIR` joins all shards. A shard
+/// that is finished is not run again.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Ensemble {
@@ -92,7 +93,7 @@ pub(crate) struct Ensemble {
     /// Threads [default: as many as there are cores]; the results do not depend on it
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
-    /// Vector instructions at most; the results do not depend on it
+    /// Widest vector instructions that may be used; the results do not depend on it
     #[arg(long, value_name = "SET", value_enum, default_value_t, hide_default_value = true)]
     instructions: Set,
 }

@@ -14,15 +14,15 @@ use crate::flags::body::{ReadOnce, check_size, described};
 pub(super) enum Torque {
     /// The body is free
     None,
-    /// -k J w
+    /// -k J w, in proportion to the angular momentum (J: tensor)
     Drag,
     /// -D w, D diagonal in sensor axes
     Drag3,
-    /// -c |w| J w
+    /// -c |w| J w, growing with the square of the rate
     Quadratic,
     /// Constant in body axes
     Constant,
-    /// The simplest that the record does not contradict
+    /// The simplest model that the record does not contradict
     Auto,
 }
 
@@ -42,24 +42,24 @@ impl From<Torque> for TorqueModel {
 /// Standard deviations of what may be wrong with the sensor.
 #[derive(Args, Clone, Debug)]
 pub(super) struct SensorArguments {
-    /// Standard deviation of the offset of each axis, rad/s: estimated with this prior
-    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    /// Estimate the offset of each axis, rad/s, with this prior standard deviation
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true, help_heading = "Errors of the sensor")]
     gyro_bias: Option<f64>,
-    /// Standard deviation of the relative error of scale that the axes share: estimated with this prior
-    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    /// Estimate the relative scale error that all axes share, with this prior standard deviation
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true, help_heading = "Errors of the sensor")]
     gyro_scale: Option<f64>,
-    /// Standard deviation of the relative errors of scale of each axis: estimated with this prior
-    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    /// Estimate the relative scale error of each axis, with this prior standard deviation
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true, help_heading = "Errors of the sensor")]
     gyro_axis_scales: Option<f64>,
-    /// Standard deviation of the errors of the right angles between axes, rad: estimated with this prior
-    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    /// Estimate the deviations of the angles between axes from a right angle, rad, with this prior standard deviation
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true, help_heading = "Errors of the sensor")]
     gyro_misalignment: Option<f64>,
-    /// Standard deviation of the delays of the readings of y and z against x, s: estimated with this prior, positive where a reading shows
-    /// the motion of an earlier time
-    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    /// Estimate the delays of y and z against x, s, with this prior standard deviation; a delay is positive where a reading shows the
+    /// motion of an earlier time
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true, help_heading = "Errors of the sensor")]
     gyro_skew: Option<f64>,
-    /// Step of the digital readings, rad/s: its rounding is noise of variance Q^2/12 [default: found in the readings]
-    #[arg(long, value_name = "Q", value_parser = positive, allow_hyphen_values = true)]
+    /// Step of the digital readings, rad/s, which counts as noise of variance Q^2/12 [default: found in the readings]
+    #[arg(long, value_name = "Q", value_parser = positive, allow_hyphen_values = true, help_heading = "Errors of the sensor")]
     quantum: Option<f64>,
 }
 
@@ -82,20 +82,20 @@ impl SensorArguments {
 #[derive(Args, Clone, Debug)]
 #[group(multiple = false)]
 pub(super) struct KnownArguments {
-    /// Body of the same trace: a name of the catalogue, or a file of `polhode inertia`
-    #[arg(long, value_name = "NAME|FILE")]
+    /// Body whose tensor has the trace of the one to be fitted: a name of the catalogue, or a file of `polhode inertia`
+    #[arg(long, value_name = "NAME|FILE", help_heading = "Known about the tensor")]
     body: Option<String>,
     /// Trace of the tensor, kg m^2
-    #[arg(long, value_name = "TRACE", value_parser = number, allow_hyphen_values = true)]
+    #[arg(long, value_name = "TRACE", value_parser = number, allow_hyphen_values = true, help_heading = "Known about the tensor")]
     trace: Option<f64>,
     /// Magnitude of the angular momentum, the same in all segments, kg m^2/s
-    #[arg(long, value_name = "L", value_parser = number, allow_hyphen_values = true)]
+    #[arg(long, value_name = "L", value_parser = number, allow_hyphen_values = true, help_heading = "Known about the tensor")]
     momentum: Option<f64>,
     /// Twice the kinetic energy, the same in all segments, kg m^2/s^2
-    #[arg(long, value_name = "2T", value_parser = number, allow_hyphen_values = true)]
+    #[arg(long, value_name = "2T", value_parser = number, allow_hyphen_values = true, help_heading = "Known about the tensor")]
     twice_energy: Option<f64>,
     /// Moment about an axis, kg m^2
-    #[arg(long, value_name = "nx,ny,nz,I", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    #[arg(long, value_name = "nx,ny,nz,I", value_parser = numbers::<4>, allow_hyphen_values = true, help_heading = "Known about the tensor")]
     moment: Option<[f64; 4]>,
     /// What --body names.
     #[arg(skip)]
@@ -140,13 +140,12 @@ impl KnownArguments {
 #[derive(Args, Clone, Debug)]
 #[group(multiple = false)]
 pub(super) struct PriorArguments {
-    /// Inertia tensor that is known beforehand, as from CAD, kg m^2, sensor axes: three moments or six entries, then the
-    /// relative standard deviation s of its entries, s sqrt(Iii Ijj); it is joined with what the record tells,
-    /// and supplies what the record leaves open
-    #[arg(long, value_name = "Ixx,Iyy,Izz[,Ixy,Ixz,Iyz],SIGMA", value_parser = prior, allow_hyphen_values = true)]
+    /// Inertia tensor that is known beforehand, as from CAD, kg m^2, sensor axes: three moments or six entries, then s, with
+    /// s sqrt(Iii Ijj) the standard deviation of the entry Iij. It is combined with the record
+    #[arg(long, value_name = "Ixx,Iyy,Izz[,Ixy,Ixz,Iyz],SIGMA", value_parser = prior, allow_hyphen_values = true, help_heading = "Known about the tensor")]
     prior_inertia: Option<Prior>,
-    /// The same in any unit: only the shape is known, not the size
-    #[arg(long, value_name = "Ixx,Iyy,Izz[,Ixy,Ixz,Iyz],SIGMA", value_parser = prior, allow_hyphen_values = true)]
+    /// The same in any unit: the ratios of the entries are known, the size is not
+    #[arg(long, value_name = "Ixx,Iyy,Izz[,Ixy,Ixz,Iyz],SIGMA", value_parser = prior, allow_hyphen_values = true, help_heading = "Known about the tensor")]
     prior_shape: Option<Prior>,
 }
 

@@ -35,8 +35,8 @@ pub(super) struct PoseArguments {
     from: Option<From>,
     #[command(flatten)]
     convention: AttitudeArguments,
-    /// Standard deviation of the noise of one component of the rotation vector of an attitude, rad [default: what the motion leaves]
-    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    /// Standard deviation of the noise of an attitude, each component of its rotation vector, rad [default: that of the residuals]
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true, help_heading = "Noise and smoothing")]
     attitude_noise: Option<f64>,
 }
 

@@ -7,14 +7,13 @@ use polhode_files::numbers::numbers;
 /// A wheel whose speed is a column.
 #[derive(Args, Clone, Debug)]
 pub(super) struct WheelArguments {
-    /// Axis of a wheel in sensor axes and its moment of inertia about it, kg m^2: its speed relative to the body is the
+    /// A wheel: its axis in sensor axes and its moment of inertia about it, kg m^2. Its speed relative to the body is the
     /// column `wheel`, with its unit in the header, as `wheel (rpm)`
-    #[arg(long, value_name = "nx,ny,nz,I", value_parser = wheel, allow_hyphen_values = true)]
+    #[arg(long, value_name = "nx,ny,nz,I", value_parser = wheel, allow_hyphen_values = true, help_heading = "Torques and wheels")]
     wheel: Option<Wheel>,
-    /// Find the moment of inertia of a wheel with this axis instead, sensor axes: the body is that of --body, in sensor
-    /// axes, with the wheel at rest; the speed of the wheel relative to it is the column `wheel`, with its unit. With --carrier: find
-    /// it with carrier and object
-    #[arg(long, value_name = "nx,ny,nz", value_parser = axis, conflicts_with = "wheel", allow_hyphen_values = true)]
+    /// Find the moment of inertia of a wheel with this axis, sensor axes. The tensor of --body, in sensor axes, is that with the
+    /// wheel at rest; the speed is the column `wheel` as above. With --carrier it is found together with carrier and object
+    #[arg(long, value_name = "nx,ny,nz", value_parser = axis, conflicts_with = "wheel", allow_hyphen_values = true, help_heading = "Torques and wheels")]
     calibrate_wheel: Option<Vector3<f64>>,
 }
 

@@ -50,13 +50,14 @@ const EXAMPLES: &str = "Examples:
 
 /// Inertia tensor of a torque-free body from its measured angular velocity or attitude
 ///
-/// The axes of the sensor are taken as right-handed, which rates cannot tell: the report names the tensor of left-handed axes, too, and
-/// --axes undoes a mirrored axis. Attitudes (quaternions, matrices, Euler angles, modified Rodrigues parameters) are fitted where a file
-/// has no rates, or where --from says so, by maximum likelihood on the exact motion. Free rotation tells the tensor up to a factor, and
-/// its trace is then set to 1. It is absolute with one of --trace, --momentum, --twice-energy, --moment and --prior-inertia, on a --carrier, or
-/// with columns that name their units: `hx (N m s)`, hy, hz (momentum of wheels), `tx (N m)`, ty, tz (known torque), or `wheel (rad/s)` (speed,
-/// with --wheel). Exit code 1: the record does not determine the tensor; the report says what it does determine, and which record would tell
-/// more.
+/// Rates are fitted, or attitudes (quaternions, matrices, Euler angles, modified Rodrigues parameters) where a file has no rates or
+/// --from asks for them. Free rotation determines the tensor up to a factor: it is then given with the trace 1. It is absolute (kg m^2)
+/// with one of --body, --trace, --momentum, --twice-energy, --moment and --prior-inertia; with --carrier; or with columns that name
+/// their units: `hx (N m s)`, hy, hz (momentum of wheels), `tx (N m)`, ty, tz (known torque), or `wheel (rad/s)` (speed, with --wheel).
+///
+/// The axes of the sensor are taken as right-handed. Rates cannot show a mirrored axis, so the report also has the moments for
+/// left-handed axes; --axes undoes a mirrored axis. Exit code 1: the record does not determine the tensor. The report then says
+/// what it does determine, and which record would tell more.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Fit {
@@ -67,17 +68,17 @@ pub(crate) struct Fit {
     reading: RecordArguments,
     #[command(flatten)]
     poses: PoseArguments,
-    /// Half width of the window that smooths the equations, s; rarely needed; with wheels the likelihood on the exact motion is then left out [default: that of the smallest uncertainty]
-    #[arg(long, value_name = "R", value_parser = positive, allow_hyphen_values = true)]
+    /// Half width of the test functions of the weak form, s; rarely needed. With wheels the weak form alone then gives the answer [default: that of the smallest uncertainty]
+    #[arg(long, value_name = "R", value_parser = positive, allow_hyphen_values = true, help_heading = "Noise and smoothing")]
     radius: Option<f64>,
-    /// Standard deviation of the noise, rad/s [default: from the samples]
-    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true)]
+    /// Standard deviation of the noise of the rates, rad/s [default: from the samples]
+    #[arg(long, value_name = "SIGMA", value_parser = positive, allow_hyphen_values = true, help_heading = "Noise and smoothing")]
     noise: Option<f64>,
     /// Lower limit on the moment about an axis, a fraction of the trace; repeatable
-    #[arg(long, value_name = "nx,ny,nz,FRACTION", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    #[arg(long, value_name = "nx,ny,nz,FRACTION", value_parser = numbers::<4>, allow_hyphen_values = true, help_heading = "Known about the tensor")]
     at_least: Vec<[f64; 4]>,
     /// Upper limit on the moment about an axis, a fraction of the trace; repeatable
-    #[arg(long, value_name = "nx,ny,nz,FRACTION", value_parser = numbers::<4>, allow_hyphen_values = true)]
+    #[arg(long, value_name = "nx,ny,nz,FRACTION", value_parser = numbers::<4>, allow_hyphen_values = true, help_heading = "Known about the tensor")]
     at_most: Vec<[f64; 4]>,
     #[command(flatten)]
     known: KnownArguments,
@@ -87,28 +88,28 @@ pub(crate) struct Fit {
     wheel: WheelArguments,
     #[command(flatten)]
     carrier: CarrierArguments,
-    /// Torque on the body besides those of the record; a model, whose values are estimated: relative drag, drag along each sensor axis, drag that grows with the square of the rate, constant in body axes
-    #[arg(long, value_enum, default_value_t = Torque::Auto)]
+    /// Model of the torque on the body, besides torques in the record; its coefficients are estimated
+    #[arg(long, value_enum, default_value_t = Torque::Auto, help_heading = "Torques and wheels")]
     torque: Torque,
     #[command(flatten)]
     sensor: SensorArguments,
-    /// Fit even if the record agrees far better with other units than those named
-    #[arg(long)]
+    /// Fit even if other units explain the record far better than those that it was read in
+    #[arg(long, help_heading = "Reading")]
     trust_units: bool,
-    /// Write the residuals to this file: a plot, or rows where it ends in .csv
-    #[arg(long, value_name = "FILE.svg|.png|.csv")]
+    /// Write the residuals to this file: a plot, or rows in a .csv
+    #[arg(long, value_name = "FILE.svg|.png|.csv", help_heading = "Output")]
     residuals: Option<PathBuf>,
     /// Draw measured and fitted rates, and |L| and T along the record, to this file
-    #[arg(long, value_name = "FILE.svg|.png")]
+    #[arg(long, value_name = "FILE.svg|.png", help_heading = "Output")]
     figure: Option<PathBuf>,
-    /// Write one page with the answer, its tables and plots to this file, also where the fit is refused
-    #[arg(long, value_name = "FILE.html|.md")]
+    /// Write one page with the answer, its tables and plots to this file, also if there is no answer
+    #[arg(long, value_name = "FILE.html|.md", help_heading = "Output")]
     report: Option<PathBuf>,
     /// How the result is printed: table on a terminal, csv otherwise
-    #[arg(long, value_enum)]
+    #[arg(long, value_enum, help_heading = "Output")]
     format: Option<Format>,
     /// Write to this file instead of standard output
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
     out: Option<PathBuf>,
 }
 

@@ -13,17 +13,17 @@ use super::table::Order;
 /// What is stated of the attitudes.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct AttitudeArguments {
-    /// State the place of the scalar, where the names of the columns leave it open
+    /// Place of the scalar, where the names of the columns leave it open
     #[arg(long, value_enum, help_heading = "Reading")]
     quaternion: Option<Order>,
-    /// State the direction of the attitude [default: found from the rows]
+    /// Direction of the attitude [default: found from the rows]
     #[arg(long, value_enum, help_heading = "Reading")]
     attitude: Option<To>,
-    /// Product of the quaternions for which --attitude is meant [default: hamilton]
+    /// Product of quaternions that --attitude assumes [default: hamilton]
     #[arg(long, value_enum, requires = "attitude", help_heading = "Reading")]
     product: Option<Product>,
-    /// Sequence of the Euler angles in the order of their columns, about turned axes, as zyx; about fixed axes with :extrinsic. Columns roll, pitch and
-    /// yaw are taken by the letters x, y and z
+    /// Sequence of the Euler angles in the order of their columns: zyx for turned (intrinsic) axes, zyx:extrinsic for fixed ones. Columns named roll,
+    /// pitch and yaw belong to the letters x, y and z
     #[arg(long, value_name = "SEQUENCE[:extrinsic]", value_parser = sequence, help_heading = "Reading")]
     euler: Option<(EulerSequence, Turns)>,
     /// Unit of the Euler angles: rad or deg

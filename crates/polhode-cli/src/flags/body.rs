@@ -20,10 +20,10 @@ pub(crate) struct BodyArguments {
     /// Principal moments in the order of the body axes, in any consistent unit
     #[arg(long, value_name = "I1,I2,I3", value_parser = numbers::<3>, allow_hyphen_values = true)]
     moments: Option<[f64; 3]>,
-    /// Tensor entries in body axes, I_xy = -sum m x y; or all nine, by rows
+    /// Inertia tensor in body axes: six entries, I_xy = -sum m x y; or all nine, by rows
     #[arg(long, value_name = "Ixx,Iyy,Izz,Ixy,Ixz,Iyz", value_parser = tensor, allow_hyphen_values = true)]
     inertia: Option<Matrix3<f64>>,
-    /// Body of the catalogue, see `polhode bodies`; or a file: JSON of `polhode inertia` or `polhode fit`, TOML of parts, URDF, MJCF or SDF, with :LINK where it has several; a mesh, STL, OBJ or PLY, of 1 kg/m^3, where no torque or wheel acts
+    /// Body of the catalogue, see `polhode bodies`; or a file: JSON of `polhode inertia` or `polhode fit`, TOML of parts, URDF, MJCF or SDF, with :LINK if it has several; or a mesh (STL, OBJ, PLY), taken with 1 kg/m^3 and refused with wheels and torques in N m
     #[arg(long, value_name = "NAME|FILE[:LINK]")]
     body: Option<String>,
     /// What --body names.

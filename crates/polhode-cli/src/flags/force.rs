@@ -18,14 +18,14 @@ pub(crate) const NO_ORBIT: &str = "there is no orbit to turn";
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Forces")]
 pub(crate) struct ForceArguments {
-    /// Weight M g times the centre of mass, body axes, N m: the body then has a fixed point, and gravity acts along -Z of space
+    /// Weight M g times the centre of mass, body axes, N m: the body turns about a fixed point, and gravity acts along -Z of space
     #[arg(long, value_name = "cx,cy,cz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     pub(crate) weight_moment: Option<[f64; 3]>,
     /// Gravity gradient on an orbit in the space x-y plane: mean motion, rad/s, and eccentricity (default 0); perigee on +x at t = 0
     #[arg(long, value_name = "n[,e]", value_parser = one_or_two, allow_hyphen_values = true)]
     gravity_gradient: Option<OneOrTwo>,
-    /// Gravity gradient on a conic, also a flyby: GM of the attracting mass, m^3/s^2, least distance from its centre, m, eccentricity,
-    /// and the time of that distance, s (default 0)
+    /// Gravity gradient on any conic, also a flyby: GM of the attracting mass, m^3/s^2; distance of the periapsis from its centre, m;
+    /// eccentricity; time of the periapsis, s (default 0)
     #[arg(
         long,
         value_name = "GM,q,e[,t]",
@@ -34,8 +34,8 @@ pub(crate) struct ForceArguments {
         conflicts_with = "gravity_gradient"
     )]
     orbit: Option<ThreeOrFour>,
-    /// Plane of the orbit in space, each angle with its unit, as 17deg,46deg,63deg: longitude of the node, inclination, argument of the
-    /// periapsis [default: the x-y plane, the least distance on +x]
+    /// Plane of the orbit in space: longitude of the node, inclination and argument of the periapsis, each with its unit, as
+    /// 17deg,46deg,63deg [default: the x-y plane, with the periapsis on +x]
     #[arg(
         long,
         value_name = "node,inclination,argument",
@@ -43,11 +43,11 @@ pub(crate) struct ForceArguments {
         allow_hyphen_values = true
     )]
     orbit_plane: Option<[f64; 3]>,
-    /// Gravity gradient on an orbit by a table of places, between which a polynomial is taken: a file with the columns t (s, or with a unit), x, y,
-    /// z (axes of space), lengths in the unit of --gm; eight rows at least
+    /// Gravity gradient on an orbit given by a table of positions, interpolated by polynomials: a file with the columns t (s, or with a unit)
+    /// and x, y, z (axes of space, in the unit of length of --gm) and at least eight rows
     #[arg(long, value_name = "FILE", requires = "gm", conflicts_with_all = ["gravity_gradient", "orbit", "orbit_plane"])]
     orbit_table: Option<PathBuf>,
-    /// GM of the mass that --orbit-table is about, m^3/s^2
+    /// GM of the attracting mass of --orbit-table, m^3/s^2 or in the unit of length of the table
     #[arg(long, value_name = "GM", value_parser = positive, allow_hyphen_values = true, requires = "orbit_table")]
     gm: Option<f64>,
     /// Constant torque in body axes, N m
@@ -56,7 +56,7 @@ pub(crate) struct ForceArguments {
     /// Constant torque in the axes of space, N m
     #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     torque_space: Option<[f64; 3]>,
-    /// Drag torque -c1 w - c2 |w| w, equal about all axes: linear coefficient, N m s, and quadratic one, N m s^2 (default 0)
+    /// Drag torque -c1 w - c2 |w| w, the same about all axes: c1, N m s, and c2, N m s^2 (default 0)
     #[arg(long, value_name = "c1[,c2]", value_parser = one_or_two, allow_hyphen_values = true)]
     drag: Option<OneOrTwo>,
 }

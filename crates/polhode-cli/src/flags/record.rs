@@ -18,18 +18,18 @@ use super::table::{TableArguments, rate_unit};
 pub(crate) struct RecordArguments {
     #[command(flatten)]
     table: TableArguments,
-    /// Fraction of the rows of rates that may be left out because they cannot be read [default: 0.02]
+    /// Largest fraction of the rows of rates that may be left out as unreadable [default: 0.02]
     #[arg(long, value_name = "FRACTION", value_parser = share, allow_hyphen_values = true, help_heading = "Reading")]
     skip_rows: Option<f64>,
     /// Unit of the rates where the header names none: rad/s, deg/s, rpm [default: rad/s]
     #[arg(long, value_name = "UNIT", value_parser = rate_unit, help_heading = "Reading")]
     rate_unit: Option<RateUnit>,
-    /// Axes of the sensor by the columns of the rates, which must be right-handed: which column, with a sign before those that
-    /// are reversed, is x, y and z; -y in x,-y,z undoes a mirrored axis. Applied before everything else [default: x,y,z]
+    /// Which columns of the rates are x, y and z of right-handed sensor axes; a minus sign reverses a column, so that x,-y,z undoes a
+    /// mirrored y axis. Applied before everything else [default: x,y,z]
     #[arg(long, value_name = "x,-y,z", value_parser = SignedAxes::parse, allow_hyphen_values = true, help_heading = "Reading")]
     axes: Option<SignedAxes>,
-    /// Use only samples from t0 to t1, s; repeatable: attitude goes on across windows that touch. With N: of the N-th file only, and then every file needs one [default: all samples; fit: if the
-    /// body does not rotate freely from the first to the last, the flights, which are found and listed]
+    /// Use only the samples from t0 to t1, s; repeatable. N: applies it to the N-th file alone, and then every file needs a window. Where windows touch, attitude continues from one to the
+    /// next [default: all samples; but fit uses the flights, which it finds and lists, if the body does not rotate freely throughout]
     #[arg(long, value_name = "[N:]t0,t1", value_parser = window, allow_hyphen_values = true, help_heading = "Reading")]
     window: Vec<Window>,
 }

@@ -19,36 +19,36 @@ pub(crate) struct StartArguments {
     /// Angular velocity at the start, body axes, rad/s or --rate-unit [default: that of the catalogue's body]
     #[arg(long, value_name = "wx,wy,wz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     omega: Option<[f64; 3]>,
-    /// Unit of --omega: rad/s, deg/s, rpm, or another of rad, deg, rev per s, min, h, d, as in deg/d [default: rad/s]
+    /// Unit of --omega: rpm, or rad, deg or rev per s, min, h or d, as deg/s [default: rad/s]
     #[arg(long, value_name = "UNIT", value_parser = rate_unit, requires = "omega")]
     rate_unit: Option<Factor>,
-    /// Angular momentum at the start in place of --omega, that of wheels included, body axes, kg m^2/s
+    /// Angular momentum at the start, wheels included, in place of --omega: body axes, kg m^2/s
     #[arg(long, value_name = "mx,my,mz", value_parser = numbers::<3>, allow_hyphen_values = true, conflicts_with = "omega")]
     momentum_body: Option<[f64; 3]>,
-    /// Angular momentum at the start in place of --omega, that of wheels included, axes of space, kg m^2/s
+    /// Angular momentum at the start, wheels included, in place of --omega: axes of space, kg m^2/s
     #[arg(long, value_name = "Lx,Ly,Lz", value_parser = numbers::<3>, allow_hyphen_values = true,
           conflicts_with_all = ["omega", "momentum_body"])]
     momentum_space: Option<[f64; 3]>,
-    /// Attitude at the start: quaternion that turns body axes to space axes, scalar first; it is divided by its norm [default: that of the catalogue's body, else 1,0,0,0]
+    /// Attitude at the start: quaternion from body to space axes, scalar first; it is divided by its norm [default: that of the catalogue's body, else 1,0,0,0]
     #[arg(long, value_name = "w,x,y,z", value_parser = quaternion, allow_hyphen_values = true)]
     attitude: Option<[f64; 4]>,
-    /// Attitude at the start by Euler angles in the sequence of --euler, rad or --angle-unit
+    /// Attitude at the start as Euler angles in the sequence of --euler, rad or --angle-unit
     #[arg(long, value_name = "phi,theta,psi", value_parser = numbers::<3>, allow_hyphen_values = true, conflicts_with = "attitude")]
     angles: Option<[f64; 3]>,
-    /// Attitude at the start by its matrix from body to space axes, nine entries by rows
+    /// Attitude at the start as a rotation matrix from body to space axes, nine entries by rows
     #[arg(long, value_name = "r11,r12,...,r33", value_parser = rotation, allow_hyphen_values = true,
           conflicts_with_all = ["attitude", "angles"])]
     rotation: Option<TypedRotation>,
-    /// Sequence of intrinsic Euler angles, each about an axis already turned, such as zyx [default: zxz]; propagate also prints them: phi, theta, psi, rad
+    /// Sequence of intrinsic Euler angles, each about an axis already turned, such as zyx [default: zxz]; where it is given, propagate also prints the angles phi, theta, psi, rad
     #[arg(long, value_name = "SEQUENCE", value_parser = sequence)]
     pub(crate) euler: Option<EulerSequence>,
-    /// Unit of angles that are typed: rad or deg [default: rad]
+    /// Unit of the angles on the command line: rad or deg [default: rad]
     #[arg(long, value_name = "UNIT", value_parser = angle_unit)]
     angle_unit: Option<Factor>,
-    /// Axes of space that the attitude or the pole refers to: ecliptic (J2000) or icrf [default: those of the catalogue's body]
+    /// Axes of space to which the given attitude or pole refers: ecliptic (J2000) or icrf [default: those of the catalogue's body]
     #[arg(long, value_name = "FRAME", value_parser = frame)]
     frame: Option<CelestialFrame>,
-    /// Axes of space of the motion: the start is turned into these, and rows, --orbit-plane and what else is in space refer to them [default: those of the start]
+    /// Axes of space of the results, ecliptic or icrf: the start is transformed to them, and --orbit-plane and all else that is given in space refers to them [default: those of the start]
     #[arg(long, value_name = "FRAME", value_parser = frame)]
     to_frame: Option<CelestialFrame>,
     #[command(flatten)]

@@ -12,13 +12,13 @@ use polhode_files::{ColumnNames, ReadAs, ReadOptions};
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Reading")]
 pub(crate) struct TableArguments {
-    /// Columns by name or by number from 1. Keys: t, id; wx,wy,wz (or x,y,z); qw,qx,qy,qz, or q0..q3 where the place of the scalar is open; r11..r33; e1..e3 (Euler); s1..s3 (MRP); lx,ly,lz
+    /// Columns by name or by number from 1, as t=time,wx=3. Keys: t, id; wx,wy,wz or x,y,z (rates); qw,qx,qy,qz, or q0..q3 if the place of the scalar is open; r11..r33 (matrix); e1..e3 (Euler angles); s1..s3 (MRP); lx,ly,lz (momentum)
     #[arg(long, value_name = "KEY=NAME,...", value_parser = ColumnNames::parse)]
     columns: Option<ColumnNames>,
-    /// Unit of time where the header names none: s, ms, us, ns, or a number of seconds, such as the step of a dump that counts steps [default: s]
+    /// Unit of time where the header names none: s, ms, us, ns, or a number of seconds, such as the time step where the file counts steps [default: s]
     #[arg(long, value_name = "UNIT", value_parser = time_unit)]
     time_unit: Option<TimeUnit>,
-    /// Samples a second, where a column counts samples in place of a time, or rows have neither
+    /// Samples per second, for files that count samples or have no times
     #[arg(long, value_name = "HZ", value_parser = positive, allow_hyphen_values = true, conflicts_with = "time_unit")]
     sample_rate: Option<f64>,
 }

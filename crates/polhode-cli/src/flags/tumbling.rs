@@ -10,20 +10,20 @@ use polhode_files::numbers::numbers;
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Start of a tumbling body")]
 pub(crate) struct TumblingArguments {
-    /// Start by periods in place of --omega: P_phi of the precession about the angular momentum and P_psi of the rotation about the body axis of --mode, s or with a unit: 27.38h,263h; or two of P_phi, P_psi and P_1 by name: P_1=30.56h,P_psi=263h
+    /// Two periods in place of --omega, s or with a unit: P_phi of the precession about the angular momentum and P_psi of the rotation about the body axis of --mode, as 27.38h,263h; or two of P_phi, P_psi and P_1 by name, as P_1=30.56h,P_psi=263h
     #[arg(long, value_name = "P_phi,P_psi", value_parser = periods, requires = "mode",
           conflicts_with_all = ["omega", "momentum_body", "momentum_space", "attitude", "angles", "rotation"])]
     periods: Option<Periods>,
-    /// Axis of the rotation: lam (long-axis mode, the axis of the smallest moment) or sam (short-axis mode, of the largest)
+    /// Axis of the rotation: that of the smallest moment (lam, long-axis mode) or of the largest (sam, short-axis mode)
     #[arg(long, value_enum, requires = "periods")]
     mode: Option<ModeArgument>,
     /// Direction of the angular momentum in space: longitude from x towards y and latitude from the x-y plane, rad or --angle-unit [default: along z]
     #[arg(long, value_name = "lambda,beta", value_parser = numbers::<2>, allow_hyphen_values = true, requires = "periods")]
     pole: Option<[f64; 2]>,
-    /// Angles of precession phi and rotation psi at the start (z-x-z, z along the angular momentum and along the axis of --mode), rad or --angle-unit [default: 0,0]
+    /// Euler angles of precession phi and rotation psi at the start (z-x-z, with z along the angular momentum and along the axis of --mode), rad or --angle-unit [default: 0,0]
     #[arg(long, value_name = "phi,psi", value_parser = numbers::<2>, allow_hyphen_values = true, requires = "periods")]
     phases: Option<[f64; 2]>,
-    /// The axis of the mode points away from the angular momentum: theta is above 90 degrees
+    /// The axis of the mode points away from the angular momentum (theta above 90 degrees)
     #[arg(long, requires = "periods")]
     reversed: bool,
 }

@@ -10,10 +10,10 @@ use polhode_files::wheel;
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Body")]
 pub(crate) struct WheelArguments {
-    /// A wheel on the body; give the flag once for each. Axis in body axes, moment of inertia about it, kg m^2, and speed relative to the
-    /// body at the start, rad/s or with a unit as 3000rpm. The speed is held, unless ,free is behind it: then the wheel turns without
-    /// friction; or ,torque=T, N m, of a motor that turns it against the body, from t = 0 on or ,from=t, to the end or ,until=t, s. The
-    /// inertia of the body includes its wheels, at rest on it
+    /// A wheel on the body; repeatable. ax,ay,az: its axis in body axes; I: its moment of inertia about this axis, kg m^2; SPEED: its
+    /// speed relative to the body at the start, rad/s or with a unit, as 3000rpm. The speed is held constant. With ,free the wheel turns
+    /// without friction instead. With ,torque=T a motor turns it against the body with T, N m, from t = 0 or ,from=t to the end or
+    /// ,until=t, s. The inertia of the body includes its wheels, at rest on it
     #[arg(long = "wheel", value_name = "ax,ay,az,I@SPEED[,free|,torque=T]", value_parser = wheel::parse, allow_hyphen_values = true)]
     wheels: Vec<WheelAtStart>,
 }

@@ -14,14 +14,14 @@ pub(super) struct MeshArguments {
     /// Unit of length of a mesh: mm, cm, m, in, or a number of metres [default: m]
     #[arg(long, value_name = "UNIT", value_parser = length_unit, allow_hyphen_values = true)]
     length_unit: Option<f64>,
-    /// Vertices of a mesh within this fraction of its size are the same [default: 2^-17]
+    /// Vertices of a mesh that are nearer together than this fraction of its size are merged [default: 2^-17]
     #[arg(long, value_name = "FRACTION", value_parser = positive, allow_hyphen_values = true)]
     weld: Option<f64>,
     /// How the holes of an open mesh are closed [default: an open mesh is refused]
     #[arg(long, value_enum, conflicts_with = "shell")]
     close: Option<How>,
-    /// Only the surface of a mesh has mass, as thin walls of this thickness, m, whatever --length-unit is; where the mass is given the
-    /// thickness does not count [default: the mesh is solid]
+    /// The mesh is a shell: thin walls of this thickness, m, whatever --length-unit is. With --mass the thickness has no effect [default:
+    /// the mesh is solid]
     #[arg(long, value_name = "THICKNESS", value_parser = positive, allow_hyphen_values = true)]
     shell: Option<f64>,
     /// Only this group of an OBJ file, or solid of an ASCII STL [default: the whole file]

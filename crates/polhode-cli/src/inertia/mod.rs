@@ -36,18 +36,18 @@ const EXAMPLES: &str = "Examples:
 ///   box LX,LY,LZ    ellipsoid A,B,C (semi-axes)    sphere R    shell R
 ///   cylinder R,H    tube R1,R2,H    cone R,H    torus R,r    rod L
 ///   disk R    plate LX,LY    hoop R    capsule R,H (H without the caps)
-///   mesh FILE (.stl, .obj or .ply; where parts overlap, it counts twice: a
+///   mesh FILE (.stl, .obj or .ply; volume where parts overlap counts twice: a
 ///     warning says how much, but may miss overlaps below 1/128 of the size)
 ///   tensor Ixx,Iyy,Izz,Ixy,Ixz,Iyz (or all nine entries, by rows)
 ///   parts FILE.toml    json FILE
 ///   urdf FILE...    mjcf FILE...    sdf FILE...
 ///
 /// Tensor entries carry the minus sign, I_xy = -int x y dm, and are about the
-/// centre of mass. The base of a cone is at z = 0. Of a tensor that is not
-/// physically valid, the output states the violated law and by how much, the
-/// probable cause and the nearest valid tensor; the exit code is then 1. Every
-/// link of a robot model gets a line of its own. So does what is not read: an
-/// include of SDF, an element of xacro.
+/// centre of mass. The base of a cone is at z = 0. If a tensor is not physically
+/// valid, the output states the violated law and by how much, the probable cause
+/// and the nearest valid tensor; the exit code is then 1. Every link of a robot
+/// model gets a row. So does what is not read, such as an include of SDF or an
+/// element of xacro.
 ///
 /// A file of parts lists bodies that are summed:
 ///   [[part]]
@@ -59,9 +59,9 @@ const EXAMPLES: &str = "Examples:
 #[derive(Args, Clone, Debug)]
 #[command(verbatim_doc_comment, after_help = EXAMPLES)]
 pub(crate) struct Inertia {
-    /// Shape or kind of file, from the list above
+    /// box, ellipsoid, sphere, shell, cylinder, tube, cone, torus, rod, disk, plate, hoop, capsule, mesh, tensor, parts, json, urdf, mjcf or sdf
     shape: String,
-    /// Sizes, entries or a file
+    /// Sizes, m, of a shape; entries of a tensor; or a file
     #[arg(value_name = "ARGUMENT", allow_hyphen_values = true)]
     argument: String,
     /// Further robot models
@@ -81,19 +81,19 @@ pub(crate) struct Inertia {
     /// Reference point of a typed tensor, m [default: its centre of mass]
     #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     given_about: Option<[f64; 3]>,
-    /// Edges of the bounding box of the body, m; with them more mistakes in a typed tensor are found
+    /// Edges of the bounding box of the body, m: they help to find mistakes in a typed tensor
     #[arg(long, value_name = "LX,LY,LZ", value_parser = numbers::<3>, allow_hyphen_values = true)]
     extents: Option<[f64; 3]>,
-    /// Print the tensor about this point too, m [default: about the centre of mass alone]
+    /// Print the tensor about this point too, m
     #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     about: Option<[f64; 3]>,
-    /// Of every link of a model all that is known, not one line
+    /// Print all that is known of every link of a model, not one row
     #[arg(long)]
     details: bool,
     /// Write copies of the models with their invalid tensors repaired to this folder
     #[arg(long, value_name = "DIR")]
     repair: Option<PathBuf>,
-    /// Folder that includes of an MJCF model may not leave [default: its own]
+    /// Folder within which the includes of an MJCF model must lie [default: its own]
     #[arg(long, value_name = "DIR")]
     root: Option<PathBuf>,
     /// What is written [default: what the ending of --out names, else table on a terminal, csv otherwise]

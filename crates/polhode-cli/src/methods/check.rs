@@ -11,10 +11,10 @@ use super::named;
 /// Which claims are measured.
 #[derive(Args, Clone, Debug)]
 pub(super) struct Check {
-    /// Measure every claim of this method, also those that say no, in some seconds; exit code 1 if one is false
+    /// Measure every claim of this method in some seconds, also that it does not keep something; exit code 1 if one is false
     #[arg(long, value_name = "NAME", conflicts_with = "schemes")]
     check: Option<String>,
-    /// Only in these kinds of motion [default: all that it takes]
+    /// Only in these kinds of motion [default: all for which the method is made]
     #[arg(long, value_name = "KIND,...", value_enum, value_delimiter = ',', requires = "check")]
     motion: Vec<Motion>,
     /// Measure the time of a step too

@@ -25,7 +25,7 @@ const EXAMPLES: &str = "Examples:
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Methods {
-    /// List the schemes instead: what may stand behind @, as in kick-drift@srkn-6b
+    /// List the schemes instead: what may follow the @ in a name, as in kick-drift@srkn-6b
     #[arg(long)]
     schemes: bool,
     #[command(flatten)]

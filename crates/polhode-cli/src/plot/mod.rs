@@ -39,15 +39,15 @@ const EXAMPLES: &str = "Examples:
 enum Kind {
     /// Path of the angular momentum in the body, on the sphere of its directions
     Polhode,
-    /// Path of omega in the plane across the angular momentum
+    /// Path of omega in the plane perpendicular to the angular momentum
     Herpolhode,
     /// Components of omega against time, with the flips marked
     Omega,
-    /// Euler angles against time; for a symmetric top with the potential of its tilt
+    /// Euler angles against time; for a symmetric top also the effective potential of its tilt
     Angles,
     /// Path of an axis of the body in space, on the sphere of its directions
     Trace,
-    /// The ellipsoid of inertia that rolls on a plane; with the ending .html it moves
+    /// The ellipsoid of inertia, which rolls on a plane; as .html an animation
     Poinsot,
     /// Errors of energy and angular momentum against time
     Conserved,
@@ -94,9 +94,9 @@ fn angle(text: &str) -> Result<[f64; 2], String> {
 
 /// Pictures of a motion: polhode, herpolhode, angular velocity, angles, trace, Poinsot's construction, conserved quantities
 ///
-/// The ending of FILE names the format: .svg, .png, and .html for the animation of poinsot, a page that needs no network. With
-/// --method exact the curves are those of the closed form, else those of the method, as long as its numbers are those of a rotation
-/// (else exit code 1); the title names body, forces, angular velocity at the start, method and step.
+/// The ending of FILE names the format: .svg, .png, or .html for the animation of poinsot, a page that needs no network. The curves
+/// are those of --method; if its numbers stop being those of a rotation, the exit code is 1. The title names body, forces, angular
+/// velocity at the start, method and step.
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Plot {
@@ -114,7 +114,7 @@ pub(crate) struct Plot {
     /// Method: exact, or BASE[:ARGUMENT][@SCHEME][+phase]; see `polhode methods`
     #[arg(long, value_name = "NAME", default_value = "exact", help_heading = "Motion")]
     method: String,
-    /// Step of a method with fixed steps, s; exact takes none, and taylor, dop853 and tsit5 need none
+    /// Step of a method with fixed steps, s; exact takes none; taylor, dop853 and tsit5 need none
     #[arg(long, value_name = "h", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Motion")]
     step: Option<f64>,
     /// Relative tolerance of the methods that choose their steps: taylor, dop853, tsit5
@@ -123,10 +123,10 @@ pub(crate) struct Plot {
     /// Axis whose path trace draws [default: that of the weight of a top, else z]
     #[arg(long, value_enum, value_name = "AXIS", help_heading = "Picture")]
     axis: Option<BodyAxis>,
-    /// Direction that spheres are seen from: azimuth and elevation, deg [default: one that shows the path]
+    /// Direction from which spheres are seen: azimuth and elevation, deg [default: one that shows the path]
     #[arg(long, value_name = "AZ,EL", value_parser = angle, allow_hyphen_values = true, help_heading = "Picture")]
     view: Option<[f64; 2]>,
-    /// Size: column (500x400), wide (860x400), slide (960x540) or WIDTHxHEIGHT in pixels; long titles, several panels and equal scales make a picture higher; a PNG has twice as many pixels [default: column]
+    /// Size: column (500x400), wide (860x400), slide (960x540) or WIDTHxHEIGHT, in pixels. Long titles, several panels and equal scales make a picture higher. A PNG has twice as many pixels in each direction [default: column]
     #[arg(long, value_name = "SIZE", value_parser = size, help_heading = "Picture")]
     size: Option<Size>,
     /// The picture; its ending names the format: .svg, .png or .html

@@ -60,34 +60,34 @@ pub(crate) struct Propagate {
     motion: MotionArguments,
     #[command(flatten)]
     times: TimeArguments,
-    /// Rows are the times at which this happens, from the start to --until: 'flip', 'angle(body z, space x) < 10deg' (or >), 'rate > 5rad/s' (or <), or 'nearest(w,x,y,z)', the attitude nearest to that one; several times for several
+    /// Print the times at which this happens, from the start to --until: 'flip'; 'angle(body z, space x) < 10deg' (or >); 'rate > 5rad/s' (or <); 'nearest(w,x,y,z)', the nearest approach to an attitude. Repeatable
     #[arg(long = "event", value_name = "EVENT", value_parser = event, help_heading = "Events")]
     events: Vec<TypedEvent>,
-    /// End with the first event
+    /// Stop at the first event
     #[arg(long, requires = "events", help_heading = "Events")]
     stop: bool,
-    /// The exact motion between the attitudes of a file (t, q_w, q_x, q_y, q_z; body to space unless its names say otherwise), in rows of --every from the first to the last, with the error of spherical linear interpolation
+    /// Exact motion through the attitudes of a file (t, q_w, q_x, q_y, q_z; body to space unless the names of its columns say otherwise), from the first to the last with --every between rows, with the error of spherical linear interpolation
     #[arg(long, value_name = "POSES", requires = "every", help_heading = "Through attitudes",
           conflicts_with_all = ["omega", "momentum_body", "momentum_space", "attitude", "angles", "rotation", "frame", "to_frame", "periods", "times", "times_column", "until", "start_time", "events", "method", "step", "tolerance"])]
     through: Option<PathBuf>,
-    /// Most turns between two attitudes, by the mean spin 2E/|L| [default: 1]
+    /// Largest number of turns between two attitudes, at the mean spin 2E/|L| [default: 1]
     #[arg(long, value_name = "N", value_parser = positive, allow_hyphen_values = true, requires = "through", help_heading = "Through attitudes")]
     turns: Option<f64>,
     /// Method: exact, or BASE[:ARGUMENT][@SCHEME][+phase] as in kick-drift@srkn-6b; see `polhode methods` and `polhode methods --schemes`
     ///
-    /// dissipating:LOSS[@SCHEME] moves a body with inner friction, which loses energy and keeps its angular momentum
+    /// dissipating:LOSS[@SCHEME] is for a body with inner friction, which loses energy and keeps its angular momentum
     #[arg(long, value_name = "NAME", default_value = "exact", help_heading = "Method")]
     method: String,
-    /// Step of a method with fixed steps, s; exact, taylor, dop853 and tsit5 need none
+    /// Step of a method with fixed steps, s; exact takes none; taylor, dop853 and tsit5 need none
     #[arg(long, value_name = "h", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Method")]
     step: Option<f64>,
     /// Relative tolerance of the methods that choose their steps: taylor, dop853, tsit5
     #[arg(long, value_name = "TOL", value_parser = positive, allow_hyphen_values = true, help_heading = "Method")]
     tolerance: Option<f64>,
-    /// Direction to an observer: longitude from x towards y of space and latitude, rad or --angle-unit; adds where he stands in the sky of the body, observer_longitude and observer_latitude, body axes, rad
+    /// Direction to an observer in space: longitude from x towards y and latitude, rad or --angle-unit. Adds the sub-observer point: observer_longitude and observer_latitude, body axes, rad
     #[arg(long, value_name = "lambda,beta", value_parser = numbers::<2>, allow_hyphen_values = true, help_heading = "Output")]
     observer: Option<[f64; 2]>,
-    /// Columns of the rows, by commas: t, jd (with --epoch), q, omega, energy, momentum, errors, euler, observer, or names of columns [default: all but jd]
+    /// Columns to print, separated by commas: t, jd (with --epoch), q, omega, energy, momentum, errors, euler, observer, or names of single columns [default: all but jd]
     #[arg(long, value_name = "NAMES", value_delimiter = ',', help_heading = "Output")]
     fields: Vec<String>,
     /// How rows are printed [default: table on a terminal, csv otherwise]

@@ -52,16 +52,16 @@ const MOST_RIVALS: usize = 3;
 /// See the body turn: a page of one file, without network
 ///
 /// The page draws the body where its shape is known: a mesh (STL, OBJ, PLY), a link of a URDF model with its meshes, a TOML file of
-/// parts, bodies of the catalogue; else a box with the same inertia, and the page says so. Checkboxes add the angular velocity, the
-/// angular momentum, the polhode on the ellipsoid of inertia and the herpolhode on the invariable plane. The motion is the exact one
-/// where there is one, else that of taylor, and is computed here: the page only shows it.
+/// parts, a body of the catalogue. Else it draws a box with the same inertia, and says so. Checkboxes add the angular velocity, the
+/// angular momentum, the polhode on the ellipsoid of inertia and the herpolhode on the invariable plane. The motion is computed
+/// before the page is written: the exact one where there is a closed form, else by the method taylor.
 ///
-/// --against draws a second body, faded: moved by a method from the same start, or read from a file. The page tells the angle between
-/// the two, how often each has turned over, and how the energy of the second has changed.
+/// --against draws a second body, faded, which a method moves from the same start, or whose attitudes a file has. The page shows the
+/// angle between the two, how often each has turned over, and how the energy of the second has changed.
 ///
-/// In the page: drag or arrow keys turn the view, + and - zoom, space plays and pauses, comma and full stop go back and forth. An
-/// address that ends in #t=3.5 opens it at that time, #t=3.5&omega&polhode
-/// with what the checkboxes are called, and #view=35,20 seen from an azimuth and an elevation in degrees.
+/// In the page: drag or arrow keys turn the view, + and - zoom, space plays and pauses, comma and full stop step back and forth. The
+/// end of the address sets what is shown first: #t=3.5 the time in s, #t=3.5&omega&polhode also checkboxes by name, #view=35,20 the
+/// azimuth and elevation of the view in degrees.
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Show {
@@ -76,21 +76,21 @@ pub(crate) struct Show {
     /// Method of the first body: exact, or BASE[:ARGUMENT][@SCHEME][+phase] [default: exact where there is a closed form, else taylor]
     #[arg(long, value_name = "NAME", help_heading = "Motion")]
     method: Option<String>,
-    /// Step of a --method with fixed steps, s
+    /// Step of --method, if it has fixed steps, s
     #[arg(long, value_name = "h", value_parser = positive_duration, allow_hyphen_values = true, requires = "method", help_heading = "Motion")]
     step: Option<f64>,
-    /// Relative tolerance of a --method that chooses its steps
+    /// Relative tolerance of --method, if it chooses its steps
     #[arg(long, value_name = "TOL", value_parser = positive, allow_hyphen_values = true, requires = "method", help_heading = "Motion")]
     tolerance: Option<f64>,
-    /// A second body, faded: a method with its step behind the last colon, as rk4:0.1, or one that chooses its steps, as dop853; or a file with attitudes, of any kind that `polhode audit` reads; up to three times
+    /// A second body, faded: a method with its step after the last colon, as rk4:0.1; a method that chooses its steps, as dop853; or a file with attitudes that `polhode audit` reads. Up to three times
     #[arg(long, value_name = "METHOD:STEP|FILE", help_heading = "Comparison")]
     against: Vec<String>,
     #[command(flatten)]
     table: TableArguments,
-    /// State the place of the scalar in the quaternions of files [default: as named, else found from the rows]
+    /// Place of the scalar in the quaternions of files [default: as named, else found from the rows]
     #[arg(long, value_enum, help_heading = "Reading")]
     quaternion: Option<Order>,
-    /// Draw this mesh: STL, OBJ or PLY, in body axes, with its centre where the body's is, or with its origin at a fixed point
+    /// Draw this mesh (STL, OBJ or PLY, in body axes): its centre at that of the body, or its origin at the fixed point of a top
     #[arg(long, value_name = "FILE", help_heading = "Picture")]
     mesh: Option<PathBuf>,
     /// The page

@@ -16,19 +16,19 @@ pub(super) struct DisturbanceArguments {
     /// Viscous drag about each axis, -d w, N m s: three coefficients, where --drag of propagate has one for all axes
     #[arg(long, value_name = "dx,dy,dz", value_parser = drags, allow_hyphen_values = true)]
     drag: Option<[f64; 3]>,
-    /// Constant torque that the record does not tell, N m (--torque of fit names a model)
+    /// Constant torque that is not written to the record, N m (--torque of fit, in contrast, names a model)
     #[arg(long, value_name = "tx,ty,tz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     torque: Option<[f64; 3]>,
     /// Constant torque that is written to columns tx, ty, tz, N m
     #[arg(long, value_name = "tx,ty,tz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     known_torque: Option<[f64; 3]>,
-    /// White noise of each component of the torque: deviation of the impulse of 1 s, N m s^(1/2)
+    /// White noise of each component of the torque: standard deviation of its impulse over 1 s, N m s^(1/2)
     #[arg(long, value_name = "S", value_parser = not_negative, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
     torque_noise: f64,
-    /// Momentum of wheels at the start beside those of --wheel, written with theirs to the columns hx, hy, hz (N m s)
+    /// Angular momentum of wheels at the start, besides those of --wheel; the sum is written to the columns hx, hy, hz (N m s)
     #[arg(long, value_name = "hx,hy,hz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     wheel_momentum: Option<[f64; 3]>,
-    /// Change of the wheels' momentum, N m
+    /// Rate of change of --wheel-momentum, N m
     #[arg(long, value_name = "x,y,z", value_parser = numbers::<3>, allow_hyphen_values = true)]
     wheel_rate: Option<[f64; 3]>,
 }
@@ -83,24 +83,23 @@ pub(super) struct GyroscopeArguments {
     /// Constant offset, rad/s
     #[arg(long, value_name = "bx,by,bz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     offset: Option<[f64; 3]>,
-    /// Random walk of the offset: deviation after 1 s, rad/s^(3/2)
+    /// Random walk of the offset: standard deviation after 1 s, rad/s^(3/2)
     #[arg(long, value_name = "W", value_parser = not_negative, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
     offset_walk: f64,
-    /// Scale error of all axes together: 0.01 reads one per cent too much
+    /// Scale error of all axes: with 0.01 they read 1 % too much
     #[arg(long, value_name = "S", value_parser = number, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
     scale_error: f64,
     /// Scale error of each axis
     #[arg(long, value_name = "ax,ay,az", value_parser = numbers::<3>, allow_hyphen_values = true)]
     axis_scale_errors: Option<[f64; 3]>,
-    /// How far the axes of the pairs xy, xz and yz lean towards each other, each of the two, rad: the angle between them is off by twice
-    /// that, which is what `fit` estimates
+    /// Misalignment of the axes x and y, x and z, y and z, rad: both axes of a pair lean towards each other by this angle. Their angle is
+    /// off by twice as much, which is what `fit` estimates
     #[arg(long, value_name = "xy,xz,yz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     misalignment: Option<[f64; 3]>,
     /// Step of the digital output, rad/s
     #[arg(long, value_name = "Q", value_parser = not_negative, allow_hyphen_values = true, default_value = "0", hide_default_value = true)]
     quantum: f64,
-    /// How much later than the time of its row each axis is read, s: a delay of the reading behind the motion, which `fit` estimates, has the
-    /// other sign
+    /// Skew: time after that of its row at which each axis is read, s. The delays that `fit` estimates have the other sign
     #[arg(long, value_name = "sx,sy,sz", value_parser = numbers::<3>, allow_hyphen_values = true)]
     skew: Option<[f64; 3]>,
     /// Fraction of the samples with a spike on one component, and its size, rad/s

@@ -33,7 +33,7 @@ const EXAMPLES: &str = "Examples:
 
 /// Record of a rate sensor, or of attitudes, of a known body
 ///
-/// `polhode fit` reads its CSV, so that a measurement can be planned and an instrument rehearsed. The same seed gives the
+/// `polhode fit` and `polhode attitude` read its CSV, so that a measurement can be tried before it is made. The same seed gives the
 /// same record on every machine.
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
@@ -45,28 +45,28 @@ pub(crate) struct Simulate {
     /// Angular velocity at the start, body axes, rad/s or --rate-unit [default: that of the catalogue's body]
     #[arg(long, value_name = "wx,wy,wz", value_parser = numbers::<3>, allow_hyphen_values = true, help_heading = "Start")]
     omega: Option<[f64; 3]>,
-    /// Unit of --omega alone: rad/s, deg/s, rpm, or another of rad, deg, rev per s, min, h, d, as in deg/d [default: rad/s]
+    /// Unit of --omega alone: rpm, or rad, deg or rev per s, min, h or d, as deg/s [default: rad/s]
     #[arg(long, value_name = "UNIT", value_parser = rate_unit, requires = "omega", help_heading = "Start")]
     rate_unit: Option<Factor>,
     /// Duration: s, or with a unit (ms, min, h, d)
     #[arg(long, value_name = "T", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Record")]
     until: f64,
-    /// Time between samples, in the same way
+    /// Time between samples: s, or with a unit
     #[arg(long, value_name = "DT", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Record")]
     every: f64,
-    /// Scatter of the sample times, as a fraction of DT; below 1
+    /// Scatter of the sample times, a fraction of DT below 1
     #[arg(long, value_name = "FRACTION", value_parser = jitter, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Record")]
     jitter: f64,
-    /// Scatter of the true times about those of the record, as a fraction of DT; below 1 together with --jitter
+    /// Scatter of the true times about those that the record has, a fraction of DT; together with --jitter below 1
     #[arg(long, value_name = "FRACTION", value_parser = jitter, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Record")]
     hidden_jitter: f64,
-    /// Number of tosses, each a motion of its own of duration T
+    /// Number of tosses, each a free motion of duration T with its own start
     #[arg(long, value_name = "N", default_value = "1", help_heading = "Record")]
     tosses: NonZeroUsize,
-    /// Time between two tosses, in the same way [default: 20 DT]
+    /// Time between two tosses: s, or with a unit [default: 20 DT]
     #[arg(long, value_name = "P", value_parser = positive_duration, allow_hyphen_values = true, help_heading = "Record")]
     pause: Option<f64>,
-    /// Standard deviation of each component of the later tosses' starts about --omega, rad/s
+    /// Standard deviation of the starts of the later tosses, each component about --omega, rad/s
     #[arg(long, value_name = "SIGMA", value_parser = not_negative, allow_hyphen_values = true, default_value = "0", hide_default_value = true, help_heading = "Record")]
     scatter: f64,
     /// Seed of the random numbers

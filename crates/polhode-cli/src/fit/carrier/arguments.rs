@@ -14,15 +14,15 @@ use crate::flags::body::named;
 /// Records of a carrier and of what was attached to it.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct CarrierArguments {
-    /// Record of the carrier alone, which DATA.csv, if any, holds with the object on it: one joint fit of all records gives the
-    /// absolute tensors of carrier and object. All records are of one sensor, in its axes; --window N: counts the files of --carrier, --proof,
-    /// DATA and --object-proof, in this order
+    /// Record of the carrier alone; DATA.csv, if given, is the carrier with the object on it. One joint fit of all records gives the
+    /// absolute tensors of carrier and object. All records are of one sensor, in its axes. The N of --window counts the files of --carrier,
+    /// --proof, DATA and --object-proof, in this order
     #[arg(long, value_name = "FILE.csv", help_heading = "Carrier", conflicts_with_all = [
         "at_least", "at_most", "body", "trace", "momentum", "twice_energy", "moment", "prior_inertia", "prior_shape",
         "residuals", "figure", "from", "quaternion", "attitude", "product", "euler", "angle_unit", "attitude_noise",
     ])]
     carrier: Vec<PathBuf>,
-    /// Record of carrier and proof body: it gives the size
+    /// Record of carrier and proof body, which gives the size
     #[arg(
         long,
         value_name = "FILE.csv",
@@ -31,7 +31,7 @@ pub(crate) struct CarrierArguments {
         requires = "proof_body"
     )]
     proof: Vec<PathBuf>,
-    /// Record of carrier, object and proof body together: it gives the size of the object where no wheel turns and no torque is known
+    /// Record of carrier, object and proof body, which gives the size of the object if no wheel turns and no torque is known
     #[arg(
         long,
         value_name = "FILE.csv",
@@ -41,7 +41,7 @@ pub(crate) struct CarrierArguments {
     )]
     object_proof: Vec<PathBuf>,
     /// Tensor of the proof body about its centre of mass, kg m^2, sensor axes: three moments or six entries, a body of the catalogue,
-    /// or a file as of `polhode inertia`. Without --proof-at it is what the proof body adds to the carrier
+    /// or a file as of `polhode inertia`. Without --proof-at it is the whole tensor that the proof body adds to the carrier
     #[arg(
         long,
         value_name = "Ixx,Iyy,Izz[,Ixy,Ixz,Iyz]|NAME|FILE",
@@ -50,13 +50,13 @@ pub(crate) struct CarrierArguments {
         allow_hyphen_values = true
     )]
     proof_body: Option<String>,
-    /// Relative standard deviation s of what the proof body adds: its entries are known to s sqrt(Dii Djj) [default: exact]
+    /// Relative standard deviation s of the tensor D that the proof body adds: s sqrt(Dii Djj) for the entry Dij [default: exact]
     #[arg(long, value_name = "SIGMA", value_parser = positive, help_heading = "Carrier", requires = "proof_body", allow_hyphen_values = true)]
     proof_sigma: Option<f64>,
-    /// Centre of mass of the proof body from that of the carrier, m, sensor axes, and its mass, kg: adds the parallel-axis term
+    /// Centre of mass of the proof body relative to that of the carrier, m, sensor axes, and its mass, kg: adds the parallel-axis term
     #[arg(long, value_name = "x,y,z,MASS", value_parser = numbers::<4>, help_heading = "Carrier", requires = "proof_body", requires = "carrier_mass", allow_hyphen_values = true)]
     proof_at: Option<[f64; 4]>,
-    /// The same of the object: gives its tensor about its own centre of mass, too
+    /// The same for the object: the answer then also has its tensor about its own centre of mass
     #[arg(long, value_name = "x,y,z,MASS", value_parser = numbers::<4>, help_heading = "Carrier", requires = "carrier_mass", allow_hyphen_values = true)]
     object_at: Option<[f64; 4]>,
     /// Mass of the carrier, kg

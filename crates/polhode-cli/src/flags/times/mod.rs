@@ -17,17 +17,17 @@ pub(crate) use regular::{Regular, regular};
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Times")]
 pub(crate) struct TimeArguments {
-    /// Output times: a list t1,t2,..., a file with one time a line or a column, or - for standard input; seconds, with a unit (12h, 30d), or dates with --epoch
+    /// Output times: a list t1,t2,..., a file with one time a line or a column of times, or - for standard input; s, with a unit (12h, 30d), or dates with --epoch
     #[arg(long, value_name = "LIST|FILE|-", value_parser = times, allow_hyphen_values = true,
           conflicts_with_all = ["until", "every"])]
     times: Option<Times>,
     /// Column of the file of --times, by its name or number [default: t]
     #[arg(long, value_name = "NAME|N")]
     times_column: Option<String>,
-    /// Last time, of the rows or of --event: s, with a unit, or a date with --epoch
+    /// Last time of the rows, or of the search for --event: s, with a unit, or a date with --epoch
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     until: Option<String>,
-    /// Time between rows, or between looks for --event: s, or with a unit (ms, min, h, d)
+    /// Time between rows, or step of the search for --event: s, or with a unit (ms, min, h, d)
     #[arg(long, value_name = "DT", value_parser = duration, allow_hyphen_values = true)]
     every: Option<f64>,
     /// Time of the start: s, with a unit, or a date with --epoch
@@ -39,10 +39,10 @@ pub(crate) struct TimeArguments {
         hide_default_value = true
     )]
     start_time: String,
-    /// Date of t = 0: ISO 8601, or a Julian date, with UTC, TAI, TT or TDB behind it; times without a unit are then Julian dates. Where no date has a time scale days have 86400 s
+    /// Date of t = 0: ISO 8601 or a Julian date, followed by its time scale UTC, TAI, TT or TDB. Times without a unit are then Julian dates. If no date has a time scale, every day has 86400 s
     #[arg(long, value_name = "DATE", value_parser = date, allow_hyphen_values = true)]
     epoch: Option<Date>,
-    /// Time scale of dates that are written without one: UTC, TAI, TT or TDB
+    /// Time scale of dates written without one: UTC, TAI, TT or TDB
     #[arg(long, value_name = "SCALE", value_parser = time_scale, requires = "epoch")]
     time_scale: Option<TimeScale>,
 }
