@@ -14,6 +14,7 @@ const DERIVED: &str = "derived";
 #[cfg(test)]
 struct Threshold {
     place: &'static str,
+    about: &'static str,
     name: &'static str,
     value: &'static str,
     meaning: &'static str,
@@ -26,6 +27,7 @@ macro_rules! thresholds {
         #[cfg(test)]
         const TABLE: &[Threshold] = &[$($(Threshold {
             place: stringify!($place),
+            about: $about,
             name: stringify!($name),
             value: stringify!($value),
             meaning: $meaning,
@@ -52,7 +54,7 @@ thresholds! {
     }
     noise: "the noise of the rates" {
         SURE: f64 = 5.0, "standard deviations of a mean within which the true one is taken to lie", DERIVED;
-        OUTLYING: f64 = 30.0, "medians of a squared difference beyond which it is a blow: a chance of 1e-15", DERIVED;
+        OUTLYING: f64 = 30.0, "squared difference of readings, over its median, beyond which it counts as a blow: a chance of 1e-15", DERIVED;
         LEAST: f64 = 1e-20,
             "variance over the mean square rate that the error of the quadrature alone brings", "without_noise_the_tensor_is_exact_to_the_quadrature";
         MOST: f64 = 0.25,
@@ -65,13 +67,13 @@ thresholds! {
     }
     filtered: "noise of readings that was filtered before they were sampled" {
         SLOW: f64 = 0.15,
-            "largest turn from one sample of the shortest stride to the next, rad: V of a motion then lies below the chord", "a_motion_and_other_noise_are_no_filter";
+            "largest turn from one sample of the shortest stride to the next, rad: a motion then does not look like filtered noise", "a_motion_and_other_noise_are_no_filter";
         STRIDES: usize = 6,
             "strides, each twice the one before, three of them at a time: averages over up to eight readings are seen", "averages_are_named_with_their_correlation";
         FEWEST: usize = 200, "fewest places whose mean square is nearly normal", UNMEASURED;
         MOST: usize = 20_000, "most places that are looked at", UNMEASURED;
         SURE: f64 = 5.0,
-            "standard deviations by which white noise and torque noise do not bend V: a chance of 3e-7, at three strides of 1e-6", DERIVED;
+            "standard deviations of the bend over three strides that white noise and torque noise do not reach: a chance of 3e-7 each, together of 1e-6", DERIVED;
         DITHERED: f64 = 4.0,
             "variance over that of rounding from which on errors of rounding are white: that of noise of half a step, and rounding", DERIVED;
     }
@@ -98,12 +100,12 @@ thresholds! {
         SAME: f64 = 0.05, "relative change of a level of torque noise that no longer matters", UNMEASURED;
         BOUNDLESS: f64 = 1e5, "torque noise over noise of the rates where a descent begins", UNMEASURED;
         NEGLIGIBLE: f64 = 1e-3, "the same below which torque noise counts as none", UNMEASURED;
-        BEYOND: f64 = 0.05, "share of the trace by which torques may carry an estimate beyond the law", UNMEASURED;
+        BEYOND: f64 = 0.05, "share of the trace by which torques may carry an estimate outside of the physical law", UNMEASURED;
     }
     stacked: "least squares of all stretches" {
         FLAT: f64 = 1e3, "standard deviation of a column without a prior: it says nothing", UNMEASURED;
         TOGETHER: usize = 256, "rows that are brought to a triangle together, so that they stay in the cache", UNMEASURED;
-        ITERATIONS: usize = 1_000, "of a singular value decomposition of five by five, many times what it takes", UNMEASURED;
+        ITERATIONS: usize = 1_000, "most iterations of a singular value decomposition of five by five, many times what it needs", UNMEASURED;
         RIDGE: f64 = 1e-7, "least ridge over the size of the triangle, far above its rounding", UNMEASURED;
     }
     levels: "levels of torque noise by restricted likelihood" {
@@ -128,7 +130,7 @@ thresholds! {
     }
     choice: "what the choice of a torque adds to the deviations" {
         RARE: f64 = 1e-3, "share of answers that the ellipsoid of 99.9 % leaves out", DERIVED;
-        LEAST: f64 = 0.2, "weight of a model that has this share or more: it then lies within that ellipsoid", "a_far_model_lies_within_the_ellipsoid_unless_it_is_refuted";
+        LEAST: f64 = 0.2, "least weight of a model whose share is RARE or more: it then lies within that ellipsoid", "a_far_model_lies_within_the_ellipsoid_unless_it_is_refuted";
     }
     units: "units of rate and time" {
         RADII: usize = 8, "widths of test functions, each twice the one before, at which a record is looked at", UNMEASURED;
@@ -136,17 +138,17 @@ thresholds! {
             "torque noise over the noise of the rates in the derivatives of the rates", UNMEASURED;
         STEPS: usize = 40, "most steps of least squares to the nearest free body", UNMEASURED;
         GAINED: f64 = 1e-7, "relative gain of a step after which there is no further", UNMEASURED;
-        RAISED: f64 = 1e8, "damping of a step that is not raised further", UNMEASURED;
+        RAISED: f64 = 1e8, "largest damping of a step", UNMEASURED;
         SMALLEST: f64 = 1e-3, "least share of the trace by which a start is inside of the physical law", UNMEASURED;
         SAMPLES: usize = 1_500, "samples on which these widths are compared", UNMEASURED;
         SAME: f64 = 1e-3, "relative difference of two products that are one", UNMEASURED;
         APART: f64 = 2.0, "factor from which on two products are not taken for each other", UNMEASURED;
         HELPLESS: f64 = 0.1,
             "share of the size of the derivatives that the fastest body reaches in units that are not tried", UNMEASURED;
-        OUT_OF_QUESTION: f64 = 4.0, "times what is left as read, from which other units explain less", UNMEASURED;
+        OUT_OF_QUESTION: f64 = 4.0, "residual in other units over that in the units as read, from which on they are left out", UNMEASURED;
         OPEN: f64 = 10.0, "difference of log-likelihood up to which units explain a record equally well", UNMEASURED;
         SURELY: f64 = 10.0, "gain of log-likelihood over the units as read of others that are named", UNMEASURED;
-        CLEARER: f64 = 2.0, "times as much is left as read as in units that are named", UNMEASURED;
+        CLEARER: f64 = 2.0, "residual in the units as read over that in units that are named", UNMEASURED;
         EXPLAINED: f64 = 0.1, "largest share of the squared derivatives that is left in units that explain a record", UNMEASURED;
         LISTED: usize = 3, "units that a message lists", UNMEASURED;
         SECOND: f64 = 1.333_521_432_163_324, "ratio of one possible rate of numbered samples to the next: eight a decade", UNMEASURED;
@@ -161,19 +163,19 @@ thresholds! {
             "equations over samples beyond which their covariance is all but singular", "a_radius_without_room_is_refused";
         PILOT_SAMPLES: usize = 8_000, "samples on which the radius is chosen: more would not change it", UNMEASURED;
         LONG: usize = 100_000,
-            "samples from which a descent begins at where that of a part has ended", "long_records_go_on_from_a_part_of_them";
+            "samples from which on a descent begins where that of a part of the record has ended", "long_records_go_on_from_a_part_of_them";
         SPARED: f64 = 1.01,
             "predicted variance over the least that a longer radius of a long record may have: it has fewer equations",
             "long_records_go_on_from_a_part_of_them";
         PART: usize = 30_000, "samples of that part", "long_records_go_on_from_a_part_of_them";
     }
     walk: "columns of a random walk of the offsets" {
-        SHORTEST: f64 = 0.5, "shortest of them, rad of the motion", UNMEASURED;
+        SHORTEST: f64 = 0.5, "shortest radius for these columns, rad of the motion", UNMEASURED;
     }
     next_step: "what to do next" {
-        SURE: f64 = 1.959_963_984_540_054, "deviations of half a 95 % interval", DERIVED;
+        SURE: f64 = 1.959_963_984_540_054, "standard deviations in half of a 95 % interval", DERIVED;
         UNEVEN: f64 = 10.0, "deviation of the weakest combination over that of the best from which on it is named", UNMEASURED;
-        HELPS: f64 = 2.0, "how much better another start must tell it to be advised", "another_start_that_would_not_help_is_not_advised";
+        HELPS: f64 = 2.0, "factor by which another start must lower that deviation to be advised", "another_start_that_would_not_help_is_not_advised";
         PLANNED: usize = 500, "samples of the record that is planned for that", UNMEASURED;
     }
     judgement: "refusals" {
@@ -185,10 +187,10 @@ thresholds! {
             "share of the squared derivative of the rates that no drag and constant torque explain, from which a body is driven", "a_body_that_a_hand_drives_gets_no_tensor";
         GROWN: f64 = 0.1, "relative growth of |J w| over a segment that drag cannot make", UNMEASURED;
         GROWN_BY_HALF: f64 = 0.5,
-            "the same that nothing but what drives a body makes, however near to the law its tensor is", "a_body_that_gains_half_of_its_momentum_gets_no_tensor";
+            "the same, which only a driven body reaches, however near to the law its tensor is", "a_body_that_gains_half_of_its_momentum_gets_no_tensor";
         OUTSIDE_OF_LAW: f64 = 5.0,
             "standard deviations of the physical tensor from the unconstrained one, beside such growth", UNMEASURED;
-        AUDIBLE: f64 = 0.5, "share of the squared derivative of the rates that noise may be where that of torques is told", UNMEASURED;
+        AUDIBLE: f64 = 0.5, "largest share of the squared derivative of the rates that is noise where the share of torques is reported", UNMEASURED;
         UNTOLD: f64 = 1.0,
             "deviation of a torque, in units of the rate, beyond which the record says nothing of it", "torques_that_a_record_cannot_tell_are_named";
         WIDER: f64 = 2.0,
@@ -220,7 +222,7 @@ thresholds! {
             "standard normal deviate with a chance of 0.05: an unknown beside the tensor has the deviation that the parts of a record tell", "what_parts_of_a_record_differ_in_is_less_certain";
         NAMED: f64 = 3.090_232_306_167_813, "the same with a chance of 1e-3, from which on a warning names it", DERIVED;
         NOISY: f64 = 4.0,
-            "mean square residual of a segment over that of the median segment that is worth one", UNMEASURED;
+            "mean square residual of a segment over that of the median segment from which on it is worth one", UNMEASURED;
         UNCERTAIN: f64 = 5e-3,
             "deviation of the tensor, over the trace, beyond which the covariance is only approximate", "deviations_next_to_a_steady_spin_hold";
         APART: f64 = 3.0, "standard deviations that two moments must be apart to have axes of their own", UNMEASURED;
@@ -232,7 +234,7 @@ thresholds! {
             "log-likelihood, less one for each coefficient, by which an error of the sensor may be less likely than the chosen torque and explain the record as well: a share of 5 %", "a_misaligned_sensor_explains_a_record_as_well_as_a_torque";
         LEFT_OUT: f64 = 3.719_016_485_455_709,
             "standard normal deviate with a chance of 1e-4: without torque noise, the gain of log-likelihood by what the fit takes to be zero", DERIVED;
-        NEGATIVE: f64 = 3.0, "deviations below zero of a size of the tensor from which on it is no noise", UNMEASURED;
+        NEGATIVE: f64 = 3.0, "standard deviations below zero from which on a negative size of the tensor is not noise", UNMEASURED;
         FEW: usize = 20, "degrees of freedom below which chi squared is no check", UNMEASURED;
     }
     trend: "trends of what a free body keeps, and whiteness" {
@@ -246,7 +248,7 @@ thresholds! {
     identifiability: "what a record determines" {
         VAGUE: f64 = 0.1,
             "deviation of an undetermined number, over the trace: tensors differ by 0.4 at most", "pure_spin_tells_an_axis_and_no_ratio";
-        LONGER: f64 = 20.0, "times as long as which a record is not advised to be", UNMEASURED;
+        LONGER: f64 = 20.0, "largest factor by which a longer record is advised", UNMEASURED;
         PURE: f64 = 0.05, "mean square rate across the spin, over that along it, of a pure spin", UNMEASURED;
         PRINCIPAL: f64 = 0.1,
             "largest part of a null tensor that a principal axis leaves off it", "two_pure_spins_tell_all_axes_and_no_ratio";
@@ -273,7 +275,7 @@ thresholds! {
         MAGNET: f64 = 1e-3, "torque of a magnet in the body over the trace, rad/s^2", UNMEASURED;
         WALK: f64 = 1e-4, "random walk of the offsets, rad/s per root of a second", UNMEASURED;
         WALK_STEPS: usize = 6, "steps of that walk in each segment: the slow ones matter", UNMEASURED;
-        MOST: usize = 60, "columns of a walk beyond which it is not asked for", UNMEASURED;
+        MOST: usize = 60, "most columns of a walk; with more it is left out", UNMEASURED;
     }
     motion: "the fitted motion in the report" {
         FIRST: f64 = 1.0, "first window, rad", UNMEASURED;
@@ -307,7 +309,7 @@ thresholds! {
             "room that limits must leave, as a share of the trace", "limits_hold_and_contradictions_are_named";
         MET: f64 = 0.1, "share of that by which a tensor may break the law", UNMEASURED;
         ROUNDS: usize = 400, "rounds of cuts until limits are checked", UNMEASURED;
-        PUSHES: f64 = 1e-3, "multiplier of a limit that takes part in a clash", UNMEASURED;
+        PUSHES: f64 = 1e-3, "least multiplier of a limit that takes part in a contradiction", UNMEASURED;
         PARALLEL: f64 = 1e-12, "how far the cosine of the angle of two axes may be from 1 if they are one", DERIVED;
         SYMMETRIC: f64 = 1e-9, "relative asymmetry of a covariance that is rounding", DERIVED;
     }
@@ -322,7 +324,7 @@ thresholds! {
         HALVINGS: usize = 30, "halvings of a step that does not lower the squares", UNMEASURED;
         NEAR: f64 = 0.1, "standard deviations of a step that is taken as it is", UNMEASURED;
         STILL: f64 = 1e-6, "standard deviations by which a further round may still move the answer", UNMEASURED;
-        HELD: f64 = 1e-6, "share of the trace by which a triangle inequality is open that holds the answer", UNMEASURED;
+        HELD: f64 = 1e-6, "share of the trace within which a triangle inequality counts as an equality", UNMEASURED;
         PARALLEL: f64 = 1e-9, "angle between two axes of one wheel that rounding makes, rad", DERIVED;
         CONTRADICTED: f64 = 4.753_424_308_822_899,
             "deviations of a normal number with a chance of 1e-6: records contradict each other", DERIVED;
@@ -362,8 +364,8 @@ thresholds! {
         ROUNDS: usize = 6, "rounds of noise and outliers", UNMEASURED;
         SAME: f64 = 0.01, "relative change of the noise that no longer matters", UNMEASURED;
         STEPS: usize = 400, "most steps in one window: near steady spins it takes a hundred, elsewhere some four", "near_steady_spins_are_answered_rightly_or_refused";
-        LOOK: usize = 20, "steps after which it is asked whether they lead anywhere", UNMEASURED;
-        CREEP: f64 = 0.5, "fall of chi squared in so many steps from which on they do", UNMEASURED;
+        LOOK: usize = 20, "steps after which the search is checked for progress", UNMEASURED;
+        CREEP: f64 = 0.5, "fall of chi squared in as many steps that counts as progress", UNMEASURED;
         STILL: f64 = 1e-4, "fall of chi squared that no longer matters", UNMEASURED;
         DAMPING: f64 = 1e-3, "first damping of a step that does not help", UNMEASURED;
         CHANGE: f64 = 10.0, "factor by which damping grows and falls", UNMEASURED;

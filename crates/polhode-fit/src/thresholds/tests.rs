@@ -94,12 +94,19 @@ fn sources_of_thresholds_are_tests_of_this_crate() {
 #[test]
 fn the_page_of_thresholds_is_the_table() {
     let mut page = String::from(
-        "# Thresholds\n\n`unmeasured`: no test or experiment of the repository has set it. `derived`: it follows from a \
-         distribution or from rounding.\n\n| threshold | value | meaning | shown by |\n|---|---|---|---|\n",
+        "# Thresholds of the fit\n\nThe numbers by which the fit decides, module by module. The last column names the test that shows a \
+         number: `unmeasured` if no test or experiment of the repository has set it, `derived` if it follows from a distribution or \
+         from rounding.\n",
     );
-    for row in TABLE {
-        let Threshold { place, name, value, meaning, source } = row;
-        page += &format!("| `{place}::{name}` | `{value}` | {} | {source} |\n", meaning.replace('|', "\\|"));
+    let mut section = "";
+    for &Threshold { place, about, name, value, meaning, source } in TABLE {
+        if place != section {
+            section = place;
+            page += &format!(
+                "\n## `{place}`: {about}\n\n| threshold | value | meaning | shown by |\n|---|---|---|---|\n"
+            );
+        }
+        page += &format!("| `{name}` | `{value}` | {} | {source} |\n", meaning.replace('|', "\\|"));
     }
     let path = root().join("thresholds.md");
     if std::env::var_os("POLHODE_BLESS").is_some() {
