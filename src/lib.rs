@@ -1,8 +1,8 @@
 //! Accurate long-time rotation of rigid bodies: free bodies, heavy tops, bodies under torques.
 //!
 //! * the exact motion of the free body, of a body with wheels and of Lagrange's top, at any time, to rounding;
-//! * integrators on SO(3), with what each keeps stated and tested, watched in more digits than they integrate;
-//! * inertia tensors from moments, solids, meshes and parts, and what is wrong with one that no body has;
+//! * integrators on SO(3): what each keeps is stated and tested, and errors are computed with more digits than the steps;
+//! * inertia tensors from moments, solids, meshes and parts, and what is wrong with a tensor that no body has;
 //! * in the crate `polhode-fit`, inertia tensors from noisy records of angular velocity or attitude.
 //!
 //! ```
@@ -15,7 +15,7 @@
 //! let mut run = Run::new(&method("two-turn")?, &body, &start, 0.01)?;
 //! let after = run.advance_to(1_000_000)?;
 //! let error = |quantity| after.worst.of(quantity);
-//! assert!(error(Conserved::Energy).is_some_and(|error| error < 1e-5)); // it swings, and does not grow
+//! assert!(error(Conserved::Energy).is_some_and(|error| error < 1e-5)); // it oscillates, and does not grow
 //! assert!(error(Conserved::Momentum).is_some_and(|error| error < 1e-13)); // L in space: rounding alone
 //! # Ok::<(), polhode::Error>(())
 //! ```
@@ -37,13 +37,13 @@
 //! | [`mod@method`] | the integrators, their schemes, what they claim, the catalogue |
 //! | [`run`] | long propagation, schedules, checkpoints, orders of convergence; ensembles of many bodies |
 //! | [`laws`] | what a method, a force or a scheme claims, measured |
-//! | [`truth`] | the true motion of a body, how far a run departs from it, and what became of the run |
+//! | [`truth`] | the true motion of a body, how far a run departs from it, and how the run ended |
 //! | [`advise`] | which method with which step, from short runs on the body itself |
 //! | [`audit`] | whether a trajectory from elsewhere is right, in which convention, and how large its error is |
 //! | [`catalogue`] | named bodies with their sources |
 //! | [`guide`] | a chapter for each kind of user; your own force, your own method; the exact motion |
 //!
-//! Each of those that hold code uses only those above it. The types that most programs need are also at the root:
+//! Each module of code uses only those above it. The types that most programs need are also at the root:
 //! [`Body`], [`Inertia`], [`State`], [`FreeMotion`], [`Run`], [`Schedule`], [`method()`](method()) and [`struct@Error`].
 //!
 //! # Features
@@ -53,7 +53,7 @@
 //! | `parallel` | [ensembles](run::Ensemble) on several threads, by rayon |
 //! | `random` | seeded random numbers, and [populations](body) of bodies and starts drawn with them |
 //!
-//! None is on by default. The oldest compiler that builds the crate is Rust 1.89.
+//! None is on by default. The crate needs Rust 1.89 or newer.
 //!
 //! # Notation
 //!
@@ -67,11 +67,11 @@
 //! | E | energy: kinetic, ½ m·I⁻¹m, and potential |
 //! | h | step, s |
 //!
-//! The k-th moment that is given belongs to the k-th body axis; nothing is sorted behind the caller's back.
+//! The k-th moment that is given belongs to the k-th body axis; moments are not sorted.
 //!
 //! # Errors
 //!
-//! Functions that take what users type return typed errors with the value and the law it breaks; [`struct@Error`] holds any of them. The same input gives
+//! Functions that take user input return typed errors with the value and the law that it breaks; [`struct@Error`] holds any of them. The same input gives
 //! the same bits on any processor.
 
 #![cfg_attr(docsrs, feature(doc_cfg))]

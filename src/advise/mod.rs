@@ -1,11 +1,11 @@
 //! Which method, with which step: from short runs of every candidate on the body itself.
 //!
-//! The reference is the closed form. Without one it is two runs of different methods in `f64` over the whole time, whose steps follow
-//! the rate of turning, as far as they agree to a tenth of the demand; where the digits of `f64` do not suffice, in double-double. Each candidate,
-//! of the catalogue or with another order or scheme, runs over a short part, where the body turns fastest, in steps that are halved
-//! until its error tells the step that the demand needs. The quickest of them then run over the whole time at the setting that is advised; only of
-//! bodies with a closed form, whose errors grow no faster than the time, are runs of more than a few seconds extrapolated. Processor
-//! times are measured in the same runs.
+//! The reference is the closed form. If there is none, it is two runs of different methods over the whole time, as far as they agree to a
+//! tenth of the demand: in `f64`, with steps that follow the rate of turning, or in double-double where the digits of `f64` do not suffice.
+//! Each candidate, a method of the catalogue or one with another order or scheme, runs over the short part in which the body turns fastest.
+//! Its steps are halved until its error shows the step that the demand needs. The quickest candidates then run over the whole time with the
+//! advised step. Runs of more than a few seconds are extrapolated, but only for bodies with a closed form, whose errors grow no faster than the
+//! time. Processor times are measured in the same runs.
 //!
 //! A torque that acts for less than about a fiftieth of a radian of the turn may go unseen.
 

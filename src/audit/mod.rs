@@ -1,9 +1,8 @@
 //! Is this rotation right, in which convention, and how large is its error?
 //!
-//! A [`Trajectory`] from elsewhere, in whatever convention, is read in every [`Reading`] that its columns allow; the reading by
-//! which the equations of motion lead from row to row is the convention of the record. What is left then are the errors of the
-//! program that wrote it: which quantities it keeps, how far its attitudes are from the exact motion, and which integrator or
-//! which mistake leaves such errors.
+//! A [`Trajectory`] from elsewhere, in any convention, is read in every [`Reading`] that its columns allow. The reading in which the
+//! rows obey the equations of motion is the convention of the record. Then remain the errors of the program that wrote it: which
+//! quantities it keeps, how far its attitudes are from the exact motion, and which integrator or mistake leaves such errors.
 
 mod as_written;
 mod bodies;

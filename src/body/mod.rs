@@ -1,4 +1,4 @@
-//! Bodies: inertia with forces and wheels, states of rotation, and the solver frame, in which methods compute.
+//! Bodies: inertia with forces and wheels, states of rotation, and the solver frame (principal axes), in which methods compute.
 
 #[allow(clippy::module_inception)]
 mod body;

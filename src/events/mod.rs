@@ -5,11 +5,11 @@
 //! [`ExactMotion::events`](crate::flow::ExactMotion::events) look for them on closed forms, at any time;
 //! [`Run::events`](crate::Run::events) and [`Run::until`](crate::Run::until) along a run.
 //!
-//! g is looked at in intervals of a spacing that the caller chooses. Where the rate of g is bounded, a closed form excludes an
-//! event between two looks by that bound, and divides in two an interval that it cannot exclude, down to 1/4096 of the spacing
-//! (1/64 about a change of sign): only what g does more than once within that may be missed. Flips, cones and rates know their
-//! bounds, an event of one's own states [its own](Event::changing_at_most). Elsewhere, and along runs, two events that are nearer
-//! together than the spacing may be missed; [`Events::may_miss`] says which.
+//! g is evaluated at times of a spacing that the caller chooses. On closed forms, a bound on the rate of g excludes events between two
+//! of these times. An interval that it does not exclude is halved, down to 1/4096 of the spacing (1/64 about a change of sign): only
+//! events that come in pairs within that may be missed. Flips, cones and rates know their bounds; an event of your own states
+//! [its bound](Event::changing_at_most). Without a bound, and along runs, two events that are nearer together than the spacing may be
+//! missed; [`Events::may_miss`] says which.
 //!
 //! ```
 //! use nalgebra::{UnitQuaternion, Vector3};

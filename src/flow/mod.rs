@@ -1,7 +1,7 @@
 //! Exact motions at any time, and the exact flows that splitting methods are composed of.
 //!
-//! [`FreeMotion`], [`GyrostatMotion`] (with wheels) and [`LagrangeTop`] are motions from a start, in SI units; [`ExactMotion`] takes the
-//! one that a body and its forces have. The flows:
+//! [`FreeMotion`], [`GyrostatMotion`] (with wheels) and [`LagrangeTop`] are motions from a start, in SI units; [`ExactMotion`] is whichever
+//! of them a body and its forces have. The flows:
 //!
 //! | flow | of the energy | made from |
 //! |---|---|---|

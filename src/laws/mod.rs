@@ -1,12 +1,12 @@
 //! Laws: what a method, a force or a scheme claims, measured.
 //!
 //! [`check`] measures every claim of a [method](crate::method::AnyMethod) on [six bodies](cases): free, under gravity, in a
-//! potential, under a torque, with wheels, and with wheels in a potential. What is exact in exact arithmetic is measured in double-double, where it shows as 1e-28 and a
-//! broken law cannot hide behind rounding; the law of round-off and secular drifts are measured in double precision. Claims
-//! that say no are measured too: what a method does not claim to keep must be seen to be lost. A law that a measurement does
-//! not decide says so.
+//! potential, under a torque, with wheels, and with wheels in a potential. Laws that hold in exact arithmetic are measured in double-double,
+//! where they hold to some 1e-28, so that rounding does not hide a broken law. Round-off and secular drifts are measured in double
+//! precision. Claims that say no are measured too: what a method does not claim to keep must be seen to change. If a measurement does
+//! not decide a law, the report says so.
 //!
-//! A method that claims what it does not have: Heun's two stages, which claim order 3 and a symmetric map.
+//! An example with false claims: Heun's method of order 2, which claims order 3 and a symmetric map.
 //!
 //! ```
 //! use polhode::body::{Field, Phase, Point, Problem, Rotor, Time};

@@ -1,5 +1,5 @@
-//! Methods: one step of size h is a map Φ_h that moves a point; its claims are data, and the [laws](crate::laws)
-//! measure every one of them, also that a method does not keep what it says it does not.
+//! Methods: a step of size h is a map Φ_h that moves a point. What a method claims is data. The [laws](crate::laws) measure each
+//! claim, also that a method does not keep what it does not claim to keep.
 //!
 #![doc = include_str!("../../docs/methods.md")]
 

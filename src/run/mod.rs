@@ -1,5 +1,5 @@
-//! Long propagation: steps counted in `u64`, samples at scheduled steps or at any time, events, checkpoints, and typed errors for runs
-//! that diverge; ensembles of many bodies.
+//! Long propagation: steps counted in `u64`, samples at scheduled steps or at any time, events, checkpoints, typed errors of runs
+//! that diverge, and ensembles of many bodies.
 
 mod between;
 mod checkpoint;

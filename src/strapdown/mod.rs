@@ -1,13 +1,13 @@
 //! Attitude from measured angular velocity: the integration that every gyroscope needs.
 //!
-//! Between the samples t_k and t_{k+1} the rates are a polynomial through 2m samples, m on each side, which is used in this middle
-//! interval alone. The turn is the exponential of its Magnus series: one exponential a sample. For instantaneous rates the order is
-//! up to 6, where rules that hold a rate or join two by a straight line have order 1 or 2.
+//! Between the samples t_k and t_{k+1} the rates are interpolated by a polynomial through 2m samples, m on each side. The turn is the
+//! exponential of its Magnus series: one exponential for each sample. For instantaneous rates the order is up to 6; rules that hold
+//! a rate, or interpolate two linearly, have order 1 or 2.
 //!
 //! * [`Strapdown`] takes samples one by one in constant memory, for `f64` and double-double;
-//! * [`Budgeted`] and [`attitudes`] put its error budget beside each attitude, by cause; [`choose`] finds order and samples for a record;
-//! * [`Rule`]: the Magnus rules by order and samples, and the rules that people run;
-//! * [`Flight`]: where the body is known and free, its exact motion through all the rates;
+//! * [`Budgeted`] and [`attitudes`] give each attitude with its error budget, by cause; [`choose`] finds order and samples for a record;
+//! * [`Rule`]: the Magnus rules by order and samples, and rules of other programs;
+//! * [`Flight`]: the exact motion of a known free body that fits all the rates;
 //! * [`Kind`]: whether a reading is a rate, an increment or an average.
 
 mod budget;

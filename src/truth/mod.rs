@@ -1,9 +1,9 @@
 //! The true motion of a body from a start, and how a run departs from it.
 //!
-//! The true motion is the [closed form](crate::flow::ExactMotion) where there is one. Of any other body it is a run in
-//! double-double, q₁(t), up to where a second one that takes other steps, q₂(t), agrees with it: as long as the angle
-//! `2 atan2(|v|, |w|)` of `q₁* q₂ = (w, v)` is at most an agreement, [`AGREEMENT`] unless told. Chaotic motions are known only so
-//! far: of a Lyapunov exponent λ up to about `ln(1e-13 / 1e-31) / λ ≈ 40 / λ`.
+//! The true motion is the [closed form](crate::flow::ExactMotion) where there is one. For any other body it is a run in
+//! double-double, q₁(t), as long as a second run with other steps, q₂(t), agrees with it: the angle `2 atan2(|v|, |w|)` of
+//! `q₁* q₂ = (w, v)` must be at most [`AGREEMENT`], or what the caller states. So a chaotic motion with the Lyapunov exponent λ is known
+//! up to about `ln(1e-13 / 1e-31) / λ ≈ 40 / λ`.
 //!
 //! ```
 //! use polhode::truth::{AGREEMENT, Care, Ending, Truth, evenly};
