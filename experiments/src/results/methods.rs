@@ -11,16 +11,16 @@ pub(super) const PAGE: &str = "docs/methods.md";
 
 const HEAD: &str = "<!-- made by `polhode experiment publish`; edit the methods, and not this page -->
 
-The catalogue, with what was measured. `polhode methods` lists two methods more: `linearly-implicit-euler`, the step of MuJoCo's `implicit`,
-and `dissipating:LOSS`, for a body with inner friction. A name is taken by [`method()`](crate::method()) and by `--method`; it may have an
+The catalogue of methods, with measured orders and times. `polhode methods` lists two more: `linearly-implicit-euler`, the step of MuJoCo's
+`implicit`, and `dissipating:LOSS`, for a body with inner friction. A name is taken by [`method()`](crate::method()) and by `--method`; it may have an
 argument and a scheme, `BASE[:ARGUMENT][@SCHEME][+phase]`, as in `lie-poisson:321@kahan-li-8`. `polhode methods --schemes` lists the schemes.
 `no-squish` is another name of `lie-poisson:321`, `kick-drift:4` one of `kick-drift@suzuki-4`.
 
 All claims are those of free motion, and each is tested; only the order of `kick-drift`, which is exact there, is that of motion in a
 potential. Energy is *exact* up to rounding, *bounded* for exponentially long times, or *drifts*. In formulas x = (m, q) is the momentum
 in body axes and the attitude, ω = I⁻¹m, τ the torque, f the right-hand side of the equations of motion, and a prime marks the end of a
-step. *Measured order* is that of the attitude, against the exact motion in double-double; *step* the processor time of a step in steps of
-`rk4`, on one machine, with tolerances at their usual values and output at every step.
+step. *Measured order* is that of the attitude, against the exact motion in double-double. *Step* is the processor time of a step over that
+of `rk4`, on one machine, with default tolerances and output at every step.
 ";
 
 /// The page as it follows from the committed results of the experiments `order` and `drift`.
