@@ -50,7 +50,7 @@ const EXAMPLES: &str = "Examples:
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Attitude {
-    /// Record with a header: t, wx, wy, wz, or the names of phone apps; - reads standard input
+    /// Record with times and rates, in columns t, wx, wy, wz or as phone apps name them; - reads standard input
     #[arg(value_name = "RECORD.csv")]
     record: PathBuf,
     #[command(flatten)]

@@ -56,8 +56,8 @@ const AFTER_HELP: &str = "SPEC.toml:
             free = true, or torque, from, until of a motor
   [force]   weight_moment, gravity_gradient or orbit, orbit_plane or
             orbit_table, gm; torque_body, torque_space, drag
-  [event]   first = \"flip\", or another event of propagate --event;
-            every, the step of its search, which ends with the last time
+  [event]   first = \"flip\", or another event of propagate --event, up to the
+            last time; every, the time between looks in the search
   [output]  arrays = [\"attitudes\", \"omegas\"]
 
 Examples:

@@ -61,7 +61,7 @@ const EXAMPLES: &str = "Examples:
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Fit {
-    /// Records with a header: t, wx, wy, wz, or the names of phone apps; or attitudes in any columns that audit reads
+    /// Records with times and rates, in columns t, wx, wy, wz or as phone apps name them; or attitudes, in any columns that audit reads; - reads standard input
     #[arg(required_unless_present = "carrier", value_name = "DATA.csv")]
     data: Vec<PathBuf>,
     #[command(flatten)]

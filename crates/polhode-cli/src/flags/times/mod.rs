@@ -27,7 +27,7 @@ pub(crate) struct TimeArguments {
     /// Last time of the rows, or of the search for --event: s, with a unit, or a date with --epoch
     #[arg(long, value_name = "T", allow_hyphen_values = true)]
     until: Option<String>,
-    /// Time between rows, or step of the search for --event: s, or with a unit (ms, min, h, d)
+    /// Time between rows, or between looks in the search for --event: s, or with a unit (ms, min, h, d)
     #[arg(long, value_name = "DT", value_parser = duration, allow_hyphen_values = true)]
     every: Option<f64>,
     /// Time of the start: s, with a unit, or a date with --epoch
