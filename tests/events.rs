@@ -1,6 +1,6 @@
 //! Events are found where they are, none is missed that the bounds exclude, and looking between steps changes no bit.
 
-use nalgebra::{UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::body::{Body, Force, Problem, State};
 use polhode::events::{Crossing, Event, EventError};
 use polhode::flow::{ExactMotion, FreeMotion};
@@ -165,6 +165,49 @@ fn a_cone_that_is_hardly_touched_is_touched_twice_or_not_at_all() {
             let event = Event::enters_cone(Vector3::z(), axis, half).unwrap();
             let found = motion.events(&[event], 0.0, periods * period, period / 3.0).unwrap();
             assert_eq!(found.found.len(), times, "{margin:e} {sign}");
+        }
+    }
+}
+
+/// What stays at its limit to within rounding is found once, at the start, and not wherever rounding passes the limit; a limit that is
+/// further off than rounding is told from it.
+#[test]
+fn what_stays_at_its_limit_is_found_once() {
+    let body = Body::free(Inertia::from_moments([1.0, 1.0, 2.0]).unwrap());
+    let omega = Vector3::new(1.0, 0.0, 0.5);
+    let motion = FreeMotion::from_omega(body.inertia(), UnitQuaternion::identity(), omega).unwrap();
+    // L = (1, 0, 1), and |ω|² = 5/4
+    let momentum = Vector3::new(1.0, 0.0, 1.0);
+    let (angle, rate) = (core::f64::consts::FRAC_PI_4, 1.25_f64.sqrt());
+    let events = |off: f64| {
+        [
+            Event::enters_cone(Vector3::z(), momentum, angle + off).unwrap(),
+            Event::enters_cone(Vector3::z(), -momentum, 3.0 * angle + off).unwrap(),
+            Event::rate_above(&body, rate - off).unwrap(),
+            Event::rate_below(&body, rate + off).unwrap(),
+        ]
+    };
+    for (off, count) in [(0.0, 4), (1e-13, 4), (-1e-13, 0)] {
+        let found = motion.events(&events(off), 0.0, 20.0, 0.25).unwrap().found;
+        assert!(found.iter().all(|one| one.crossing == Crossing::AtStart), "{off:e}: {found:?}");
+        assert_eq!(found.len(), count, "{off:e}");
+    }
+}
+
+/// Of a steady spin the momentum along the middle axis is rounding, whose signs are no flips; nor do they jump.
+#[test]
+fn rounding_about_a_steady_spin_turns_nothing_over() {
+    let axes = UnitQuaternion::from_euler_angles(0.3, -0.5, 1.1).to_rotation_matrix().into_inner();
+    let tensor = axes * Matrix3::from_diagonal(&Vector3::new(1.0, 2.0, 3.0)) * axes.transpose();
+    let body = Body::free(Inertia::from_tensor(tensor).unwrap());
+    for axis in [0, 2] {
+        let begin = body.state(UnitQuaternion::identity(), axes.column(axis).into_owned()).unwrap();
+        let motion = FreeMotion::from_state(body.inertia(), &begin).unwrap();
+        let exact = motion.events(&[Event::flip(&body)], 0.0, 30.0, 0.25).unwrap();
+        let mut run = Run::new(&method("rk4").unwrap(), &body, &begin, 0.1).unwrap();
+        let stepped = run.events(&[Event::flip(&body)], 30.0, 0.1).unwrap();
+        for found in [exact.found, stepped.found] {
+            assert!(found.len() == 1 && found[0].crossing == Crossing::AtStart, "{axis}: {found:?}");
         }
     }
 }

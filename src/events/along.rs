@@ -91,6 +91,8 @@ pub(crate) struct Search<'a> {
     last: Option<Look>,
     /// Of each event the sign that counts, 0 where none is known.
     signs: Vec<f64>,
+    /// Of each event what is zero to rounding, at the last look.
+    noise: Vec<f64>,
     /// Of each event the largest change between two looks.
     changes: Vec<f64>,
     pub(crate) found: Vec<Occurrence>,
@@ -114,6 +116,7 @@ impl<'a> Search<'a> {
             bounds: events.iter().map(bound).collect(),
             last: None,
             signs: vec![0.0; events.len()],
+            noise: vec![0.0; events.len()],
             changes: vec![0.0; events.len()],
             found: Vec::new(),
             looks: 0,
@@ -135,8 +138,8 @@ impl<'a> Search<'a> {
     pub(crate) fn begin<E: From<EventError>>(&mut self, time: Dd, state: &State) -> Result<(), E> {
         let look = self.look(time, state)?;
         for (n, &value) in look.values.iter().enumerate() {
-            self.signs[n] = sign(value);
-            if value == 0.0 || (self.events[n].lasts && value > 0.0) {
+            self.signs[n] = sign(value, self.noise[n]);
+            if self.signs[n] == 0.0 || (self.events[n].lasts && value > 0.0) {
                 self.found.push(Occurrence { event: n, crossing: Crossing::AtStart, time, state: *state });
             }
         }
@@ -176,6 +179,9 @@ impl<'a> Search<'a> {
 
     fn look(&mut self, time: Dd, state: &State) -> Result<Look, EventError> {
         self.looks += 1;
+        for (noise, event) in self.noise.iter_mut().zip(self.events) {
+            *noise = event.noise(state);
+        }
         let values = self.events.iter().map(|event| value(event, time, state));
         Ok(Look { time, values: values.collect::<Result<_, _>>()? })
     }
@@ -204,10 +210,11 @@ impl<'a> Search<'a> {
                 return Err(EventError::FasterThanStated { event, time, within, change, allowed }.into());
             }
         }
-        let known = self.signs[n];
-        let crosses = sign(b.value) * known < 0.0;
+        let (known, noise) = (self.signs[n], self.noise[n]);
+        let is_zero = |place: Place| sign(place.value, noise) == 0.0;
+        let crosses = sign(b.value, noise) * known < 0.0;
         if let Some(bound) = self.bounds[n] {
-            let excluded = !crosses && b.value != 0.0 && a.value.abs() + b.value.abs() > bound * (b.u - a.u);
+            let excluded = !crosses && !is_zero(b) && a.value.abs() + b.value.abs() > bound * (b.u - a.u);
             if excluded {
                 return Ok(());
             }
@@ -221,10 +228,14 @@ impl<'a> Search<'a> {
             }
         }
         if crosses {
-            // where the last looks were zero it left zero in this interval
-            let (left, right) = root(a, b, &mut at)?;
+            // where the last looks were zero it left zero in this interval, also where rounding has the sign of b already
+            let (left, right) = if a.value.signum() == b.value.signum() && a.value != 0.0 {
+                (a, a)
+            } else {
+                root(a, b, &mut at)?
+            };
             let jump = (right.value - left.value).abs();
-            if !event.jumps && jump > JUMP * (a.value.abs() + b.value.abs()) {
+            if !event.jumps && jump > noise.max(JUMP * (a.value.abs() + b.value.abs())) {
                 let (event, time) = (event.name().into(), (base + right.u).to_f64());
                 let (before, after) = (left.value, right.value);
                 return Err(EventError::NotContinuous { event, time, before, after }.into());
@@ -232,20 +243,20 @@ impl<'a> Search<'a> {
             self.looks += looks;
             // of a jump the place behind it, where the condition holds
             let place = if event.jumps || right.value.abs() < left.value.abs() { right } else { left };
-            self.signs[n] = sign(b.value);
+            self.signs[n] = b.value.signum();
             let crossing = if b.value > 0.0 { Crossing::Rising } else { Crossing::Falling };
             return self.happened(n, crossing, base + place.u, states);
         }
         if known == 0.0 {
-            self.signs[n] = sign(b.value);
+            self.signs[n] = sign(b.value, noise);
             return Ok(());
         }
         // it may come to zero and turn back in between, or at a look
         let near = a.value.abs().min(b.value.abs()) <= self.changes[n];
-        if event.jumps || !near || a.value == 0.0 && b.value == 0.0 {
+        if event.jumps || !near || is_zero(a) && is_zero(b) {
             return Ok(());
         }
-        if a.value == 0.0 {
+        if is_zero(a) {
             self.looks += looks;
             return self.happened(n, Crossing::Touching, base + a.u, states);
         }
@@ -255,14 +266,17 @@ impl<'a> Search<'a> {
             self.looks += looks;
             return Ok(());
         }
-        let least = minimum(a, b, |u| at(u).map(|value| known * value))?;
+        // raised by what is zero to rounding, so that it goes on beyond that
+        let least = minimum(a, b, |u| at(u).map(|value| known * value + noise))?;
+        let value = least.value - noise;
         self.looks += looks;
         if least.value < 0.0 {
-            let there = Place { u: least.u, value: known * least.value };
+            let there = Place { u: least.u, value: known * value };
             self.between(n, base, (a, there), 0, states)?;
             return self.between(n, base, (there, b), 0, states);
         }
-        if least.value <= TOUCHES * a.value.abs().max(b.value.abs()) {
+        // beside a look that is zero it is this look
+        if !is_zero(b) && value <= noise.max(TOUCHES * a.value.abs().max(b.value.abs())) {
             return self.happened(n, Crossing::Touching, base + least.u, states);
         }
         Ok(())
@@ -297,9 +311,9 @@ fn value(event: &Event, time: Dd, state: &State) -> Result<f64, EventError> {
     }
 }
 
-/// −1, 0 or 1.
-fn sign(value: f64) -> f64 {
-    if value == 0.0 { 0.0 } else { value.signum() }
+/// −1, 0 or 1; 0 too where rounding makes so much of zero.
+fn sign(value: f64, noise: f64) -> f64 {
+    if value.abs() <= noise { 0.0 } else { value.signum() }
 }
 
 /// How many intervals of at most `spacing` s lead from `from` to `to`, s.

@@ -8,6 +8,17 @@ use crate::body::State;
 /// A function of time (s) and state.
 type Law = Arc<dyn Fn(f64, &State) -> f64 + Send + Sync>;
 
+/// What rounding makes of g where it is zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Noise {
+    /// Nobody knows, and every sign counts.
+    Unknown,
+    /// So much.
+    Of(f64),
+    /// So much of the largest component of the momentum.
+    OfMomentum(f64),
+}
+
 /// Something that happens along a motion: a change of sign of a function g of the time and the state.
 ///
 /// ```
@@ -34,6 +45,7 @@ pub struct Event {
     pub(super) lasts: bool,
     pub(super) stops: bool,
     pub(super) bound: Bound,
+    noise: Noise,
 }
 
 /// Which changes of sign count.
@@ -67,6 +79,7 @@ impl Event {
             lasts: false,
             stops: false,
             bound: Bound::Unknown,
+            noise: Noise::Unknown,
         }
     }
 
@@ -113,6 +126,20 @@ impl Event {
 
     pub(super) fn bounded(self, bound: Bound) -> Self {
         Event { bound, ..self }
+    }
+
+    /// A value within `noise` has no sign.
+    pub(super) fn known_to(self, noise: Noise) -> Self {
+        Event { noise, ..self }
+    }
+
+    /// What is zero to rounding at the state `x`.
+    pub(super) fn noise(&self, x: &State) -> f64 {
+        match self.noise {
+            Noise::Unknown => 0.0,
+            Noise::Of(noise) => noise,
+            Noise::OfMomentum(share) => share * x.momentum_body.magnitude(),
+        }
     }
 
     /// Whether the rate of g is bounded: closed forms then [miss](super) no event between looks, and runs may.

@@ -2,10 +2,13 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::event::Bound;
+use super::event::{Bound, Noise};
 use super::{Event, EventError};
 use crate::body::{Body, State};
 use crate::rotation::{Quat, Vec3};
+
+/// Rounding of an angle of axes, and of a rate as a share of it: several times what attitudes and their products have.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Angle between two vectors, rad, exact to rounding at every angle.
 fn angle(a: Vec3<f64>, b: Vec3<f64>) -> f64 {
@@ -26,7 +29,9 @@ impl Event {
     pub fn flip(body: &Body) -> Self {
         let axis: Vec3<f64> = (body.inertia().principal_axes() * Vector3::y()).into();
         let [_, moment, _] = body.inertia().principal_moments();
-        Event::zero("flip", move |_, x| x.momentum_body.dot(axis) / moment).bounded(Bound::PerRate(1.0))
+        Event::zero("flip", move |_, x| x.momentum_body.dot(axis) / moment)
+            .bounded(Bound::PerRate(1.0))
+            .known_to(Noise::OfMomentum(ROUNDING / moment))
     }
 
     /// The axis `of_body` (body axes) comes nearer to `in_space` (space axes) than `half_angle`, rad; from outside to inside.
@@ -44,7 +49,8 @@ impl Event {
             return Err(EventError::Parameter { quantity: "the half angle", value: half_angle, rule });
         }
         let law = move |_: f64, x: &State| half_angle - angle(x.attitude.rotate(a), b);
-        Ok(Event::zero("enters cone", law).lasting().bounded(Bound::PerRadian(1.0)))
+        let event = Event::zero("enters cone", law).lasting().bounded(Bound::PerRadian(1.0));
+        Ok(event.known_to(Noise::Of(ROUNDING)))
     }
 
     /// |ω| of `body` rises above `limit`, rad/s.
@@ -70,7 +76,8 @@ impl Event {
         }
         let body = body.clone();
         let law = move |_: f64, x: &State| sign * (body.omega_body(x).norm() - limit);
-        Ok(Event::zero(name, law).lasting().bounded(Bound::PerRate(1.0)))
+        let event = Event::zero(name, law).lasting().bounded(Bound::PerRate(1.0));
+        Ok(event.known_to(Noise::Of(ROUNDING * limit)))
     }
 
     /// The attitude of `body` is as near to `target` (body → space) as it comes: the angle between them begins to grow.
@@ -84,5 +91,6 @@ impl Event {
             if rate > 0.0 { 2.0 * from_target.w * from_target.v.dot(omega) / rate } else { 0.0 }
         })
         .rising()
+        .known_to(Noise::Of(ROUNDING))
     }
 }
