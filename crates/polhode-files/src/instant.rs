@@ -4,6 +4,9 @@ use polhode::units::{Date, TimeScale, TimeUnit};
 
 use crate::numbers::number;
 
+/// All integers below are doubles.
+const WHOLE: f64 = (1_u64 << f64::MANTISSA_DIGITS) as f64;
+
 /// The seconds in the unit of time `name`.
 #[must_use]
 pub fn seconds_in(name: &str) -> Option<f64> {
@@ -17,8 +20,26 @@ fn with_unit(text: &str) -> Option<(&str, &str)> {
     (digits.len() < text.len() && is_number()).then(|| (digits.trim_end(), &text[digits.len()..]))
 }
 
+/// A number; an integer that is no double would be another one, as nanoseconds since 1970.
+fn count(text: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    let digits = text.strip_prefix(['+', '-']).unwrap_or(text).trim_start_matches('0');
+    let is_whole = digits.bytes().all(|digit| digit.is_ascii_digit());
+    if is_whole && value.abs() >= WHOLE && format!("{:.0}", value.abs()) != digits {
+        return Err(format!(
+            "'{text}' is no double, and the nearest is {value:e}; count from a later moment"
+        ));
+    }
+    Ok(value)
+}
+
 /// A time span: a number of seconds, or with a unit, as 12h.
 pub fn duration(text: &str) -> Result<f64, String> {
+    span(text, count)
+}
+
+/// The same, whose numbers are read by `number`.
+fn span(text: &str, number: fn(&str) -> Result<f64, String>) -> Result<f64, String> {
     let text = text.trim();
     let Some((digits, name)) = with_unit(text) else { return number(text) };
     let value = number(digits)?;
@@ -76,15 +97,17 @@ pub fn seconds(text: &str, epoch: Option<Epoch>) -> Result<f64, String> {
             date.seconds_since(&epoch).map_err(|error| format!("'{text}': {error}"))
         }
         None => duration(text).map_err(|error| match text.parse::<Date>() {
-            Ok(_) => format!("'{text}' is a date; give the date of t = 0 by --epoch"),
-            Err(_) => error,
+            Ok(_) if number(text).is_err() => {
+                format!("'{text}' is a date; give the date of t = 0 by --epoch")
+            }
+            _ => error,
         }),
     }
 }
 
 /// Whether `text` is a time of one of the three kinds.
 pub fn is_moment(text: &str) -> Result<(), String> {
-    duration(text).map(|_| ()).or_else(|error| {
+    span(text, number).map(|_| ()).or_else(|error| {
         let is_date = number(text).is_err() && text.parse::<Date>().is_ok();
         if is_date { Ok(()) } else { Err(error) }
     })
@@ -120,6 +143,27 @@ mod tests {
         assert!(duration("h").unwrap_err().contains("'h' is not a number"));
         assert!(duration("inf").unwrap_err().contains("not a finite number"));
         assert!(positive_duration("0h").unwrap_err().contains("not positive"));
+    }
+
+    /// 2^53 + 1 is no double, its neighbours are; digits behind a point or before an exponent may be rounded.
+    #[test]
+    fn integers_that_are_no_double_are_refused() {
+        for text in
+            ["9007199254740993", "-9007199254740993", "+0009007199254740993ns", "1700000000000000001 ns"]
+        {
+            let error = duration(text).unwrap_err();
+            assert!(error.contains("is no double, and the nearest is "), "{text}: {error}");
+        }
+        assert!(duration("9007199254740993").unwrap_err().contains("9.007199254740992e15"));
+        for (text, expected) in [
+            ("9007199254740992", 9_007_199_254_740_992.0),
+            ("-9007199254740994", -9_007_199_254_740_994.0),
+            ("10000000000000000000000", 1e22),
+            ("9007199254740993.0", 9_007_199_254_740_992.0),
+            ("1e30", 1e30),
+        ] {
+            assert_eq!(duration(text), Ok(expected), "{text}");
+        }
     }
 
     #[test]

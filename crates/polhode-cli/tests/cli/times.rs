@@ -55,6 +55,10 @@ fn times_have_units_and_dates() {
 fn times_that_cannot_be_used_are_refused_by_file_line_and_column() {
     let scratch = Scratch::new("times-refused");
     let of = |name: &str, text: &str| format!("--times {}", scratch.file(name, text));
+    let other = "9007199254740993";
+    refused(&with(&format!("--times 1,{other}")), &["--times: item 2", "no double", "9.007199254740992e15"]);
+    refused(&with(&format!("--until {other} --every 1d")), &["--until: '9007199254740993'", "no double"]);
+    refused(&with(&of("h", &format!("{other}\n"))), &["h, line 1", "no double"]);
     refused(&with(&of("a", "1\n2\nx\n")), &["a, line 3, column 1 (t): 'x': is not a number"]);
     refused(&with(&of("b", "t,mag\n1,\n,2\n")), &["b, line 3, column 1 (t): a number is missing"]);
     refused(
