@@ -52,6 +52,8 @@ const LOOKS: u32 = 64;
 /// elementary operations of the method (forces, turns, exact free motions, solutions of implicit equations); seconds, processor
 /// time of the run without the check of its errors; rk4_steps, this time over that of a step of rk4 on the same body, measured
 /// side by side.
+///
+/// Exit code 0: compared; 1: the rates of a trajectory contradict its attitudes.
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Compare {
@@ -75,7 +77,7 @@ pub(crate) struct Compare {
     /// Add a trajectory of another program as a row; repeatable. The file is one with attitudes that `polhode audit` reads, in the
     /// convention that its rows show; the motion of another body is refused. Where it has angular velocities, the row also has its
     /// errors of energy and momentum and its flips, counted from row to row: rows far apart miss flips. Rates that contradict the
-    /// attitudes are reported as status
+    /// attitudes are reported as status, and make the exit code 1
     #[arg(long, value_name = "FILE.csv", help_heading = "Methods")]
     trajectory: Vec<PathBuf>,
     #[command(flatten)]
@@ -166,8 +168,11 @@ impl Compare {
             }
         }
         let end = self.start_time + known.min(span);
+        let mut contradicted = Vec::new();
         for trajectory in &trajectories {
-            table.push(self.foreign(&truth, trajectory)?);
+            let (row, contradicts) = self.foreign(&truth, trajectory)?;
+            table.push(row);
+            contradicted.extend(contradicts.then_some(trajectory.name.as_str()));
             let is_judged = |t: &f64| *t - self.start_time <= known;
             let last = trajectory.rows.iter().rev().map(|row| row.t).find(is_judged);
             if let Some(last) = last.filter(|t| *t < end - 1e-9 * span) {
@@ -188,7 +193,11 @@ impl Compare {
             }
             crate::plot::write(file, picture, &figure.page())?;
         }
-        output.write_whole(&Format::of(self.format, self.out.as_deref())?.write(&table))
+        output.write_whole(&Format::of(self.format, self.out.as_deref())?.write(&table))?;
+        if contradicted.is_empty() {
+            return Ok(());
+        }
+        Err(Error::Failed(format!("rates contradict the attitudes beside them: {}", contradicted.join(", "))))
     }
 
     fn judged(&self, truth: &Truth, entry: &Entry) -> Result<(Judged, StepTime), Error> {

@@ -66,7 +66,8 @@ impl Compare {
         .to_vec()
     }
 
-    pub(super) fn foreign(&self, truth: &Truth, trajectory: &Trajectory) -> Result<Vec<Cell>, Error> {
+    /// The row of a file, and whether its rates contradict its attitudes.
+    pub(super) fn foreign(&self, truth: &Truth, trajectory: &Trajectory) -> Result<(Vec<Cell>, bool), Error> {
         let found = trajectory.against(truth, self.start_time)?;
         let columns = self.columns(truth.body());
         let mut row = vec![Cell::Empty; columns.len()];
@@ -101,7 +102,7 @@ impl Compare {
             set("largest_attitude_error", found.largest.into());
             set("attitude_time", found.at.map(|at| self.start_time + at).into());
         }
-        Ok(row)
+        Ok((row, found.contradiction.is_some()))
     }
 }
 

@@ -168,6 +168,9 @@ fn a_trajectory_of_another_program_is_a_row() {
         for part in ["scaled.csv: its angular velocities are off", told, "contradict each other"] {
             assert!(answer.err.contains(part), "{part}: {}", answer.err);
         }
+        // the table is printed, and its file is not promised to be right
+        let failure = "error: rates contradict the attitudes beside them: ";
+        assert!(answer.code == 1 && answer.err.contains(failure), "{}", answer.err);
     }
     // without angular velocities there is the attitude alone
     let attitudes: Vec<String> =
