@@ -19,6 +19,9 @@ const SAME_TIME: f64 = 1e-6;
 /// freedom.
 const RADIUS: f64 = 2.795;
 
+/// An error of so many times the 95 % of its budget is none of it.
+const FAR: f64 = 10.0;
+
 /// An attitude of the reference is off by so many of what its quaternions are off the norm 1, which their digits leave.
 const DIGITS: f64 = 10.0;
 
@@ -33,11 +36,16 @@ pub(super) struct Reference {
     /// What its digits leave open, rad.
     resolution: f64,
     /// Attitudes that were to be compared, those of them at a time of the reference, and of these the ones whose error is inside the 95 %
-    /// of its budget, in its direction or by its size, and those beyond twice of it.
+    /// of its budget, in its direction or by its size, those beyond twice of it, and those far beyond.
     asked: usize,
     compared: usize,
     inside: usize,
     beyond: usize,
+    far: usize,
+    /// When the first is far beyond.
+    far_at: f64,
+    /// How often a start was taken from it, which then has no error.
+    pub(super) given: usize,
     largest: f64,
     at: f64,
 }
@@ -47,7 +55,7 @@ impl Reference {
         let found = read(path, &ReadOptions::default())?;
         let name = visible(&path.display().to_string()).into_owned();
         let refused = |rule: &str, remedy: &str| Error::input("--against", &name, rule, remedy);
-        let (read_as, contradiction) = (found.read_as.clone(), found.contradicted_time.clone());
+        let (read_as, remark) = (found.read_as.clone(), found.remark());
         let (rows, reading) = attitudes(found, &name, refused)?;
         let off = |q: &[f64; 4]| (q.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs();
         let resolution = match &rows.attitude {
@@ -55,8 +63,8 @@ impl Reference {
             // of others it is not known
             _ => f64::INFINITY,
         };
-        if let Some(contradiction) = contradiction {
-            warn(&format!("{name}: {contradiction}"));
+        if let Some(remark) = remark {
+            warn(&format!("{name}: {remark}"));
         }
         Ok(Self {
             name,
@@ -69,6 +77,9 @@ impl Reference {
             compared: 0,
             inside: 0,
             beyond: 0,
+            far: 0,
+            far_at: 0.0,
+            given: 0,
             largest: 0.0,
             at: 0.0,
         })
@@ -105,6 +116,10 @@ impl Reference {
         self.inside += usize::from(angle <= within || estimate.holds(truth));
         let rounding = self.resolution + 8.0 * f64::EPSILON * self.asked as f64;
         self.beyond += usize::from(angle > 2.0 * within + rounding);
+        if angle > FAR * within + rounding {
+            self.far_at = if self.far == 0 { estimate.time } else { self.far_at };
+            self.far += 1;
+        }
         if angle > self.largest {
             (self.largest, self.at) = (angle, estimate.time);
         }
@@ -125,21 +140,43 @@ impl Reference {
         Err(Error::input("--against", &self.name, rule, remedy))
     }
 
-    /// Refuses attitudes of the record `name` most of which are beyond twice the 95 % of their budget: it is not their error.
+    /// Refuses attitudes of the record `name` most of which are beyond twice the 95 % of their budget, or any of which is far beyond: it
+    /// is not their error. Starts that were taken from the reference say nothing of the others.
     pub(super) fn judge(&self, name: &str) -> Result<(), Error> {
-        if 2 * self.beyond <= self.compared {
+        let (reference, compared) = (&self.name, self.compared);
+        let failure = if self.is_start_alone() {
+            format!(
+                "{name}: no attitude behind the start is at a time of {reference}, and nothing is compared"
+            )
+        } else if 2 * self.beyond > compared {
+            let beyond = self.beyond;
+            format!(
+                "{name}: {reference} contradicts the attitudes: {beyond} of {compared} errors are beyond twice their 95 %"
+            )
+        } else if self.far > 0 {
+            let (far, at) = (self.far, rounded(self.far_at));
+            format!(
+                "{name}: {reference} contradicts the attitudes: {far} of {compared} errors are beyond ten times their 95 %, the first at \
+                 t = {at} s"
+            )
+        } else {
             return Ok(());
-        }
-        Err(Error::Failed(format!(
-            "{name}: {} contradicts the attitudes: {} of {} errors are beyond twice their 95 %",
-            self.name, self.beyond, self.compared
-        )))
+        };
+        Err(Error::Failed(failure))
+    }
+
+    fn is_start_alone(&self) -> bool {
+        self.compared <= self.given
     }
 
     /// What the comparison found.
     pub(super) fn tell(&self) {
-        let verdict = if 2 * self.beyond > self.compared {
+        let verdict = if self.is_start_alone() {
+            "none is behind a start"
+        } else if 2 * self.beyond > self.compared {
             "the budget is contradicted"
+        } else if self.far > 0 {
+            "the budget does not hold everywhere"
         } else if 2 * self.inside < self.compared {
             "the budget is too small"
         } else {
@@ -166,7 +203,7 @@ impl Reference {
                 self.name, self.compared
             ));
         }
-        if 2 * self.inside < self.compared {
+        if 2 * self.inside < self.compared && !self.is_start_alone() {
             warn(&format!(
                 "{}: most errors are beyond their 95 %; look at the units of the readings, the convention of the reference and the deviations that are given",
                 self.name

@@ -272,7 +272,7 @@ fn records_that_tell_no_attitude_are_refused_by_name() {
     let answer = run(&with(&format!("--against {clocks}")));
     // of a body that turned the attitude is not the identity
     assert_eq!(answer.code, 1, "{}", answer.err);
-    assert!(answer.err.contains("clocks.csv: column 't' is a time too"), "{}", answer.err);
+    assert!(answer.err.contains("clocks.csv: not read: t; column 't' is a time too"), "{}", answer.err);
     let angles = scratch.file("angles.csv", "t,phi,theta,psi\n0,0,0,0\n1,0,0,1\n");
     refused(&format!("--against {angles}"), &["--against", "do not say their sequence"]);
 }
@@ -320,6 +320,49 @@ fn the_summary_says_whether_the_budget_holds() {
     let answer = run(&format!("attitude {record} --kind rate --against {rounded}"));
     assert_eq!(answer.code, 0, "{}", answer.err);
     assert!(answer.err.contains("the budget is too small"), "{}", answer.err);
+}
+
+/// Most of the errors say nothing of one that is a turn by half, nor does the start that is that of the reference say anything.
+#[test]
+fn one_wild_row_and_a_start_alone_are_no_agreement() {
+    let scratch = Scratch::new("attitude-wild");
+    let record = simulated(&scratch, "rates.csv", "--every 0.05");
+    let text = std::fs::read_to_string(exact(&scratch, 0.05)).unwrap();
+    let (rows, _) = text.trim_end().rsplit_once('\n').unwrap();
+    let wild = scratch.file("wild.csv", format!("{rows}\n20,0,0,1,0\n"));
+    let answer = run(&format!("attitude {record} --kind rate --against {wild}"));
+    assert_eq!((answer.code, answer.out.lines().count()), (1, 402), "{}", answer.err);
+    for part in [
+        "400 inside their 95 %: the budget does not hold everywhere",
+        "1 of 401 errors are beyond ten times their 95 %, the first at t = 20 s",
+    ] {
+        assert!(answer.err.contains(part), "{part}: {}", answer.err);
+    }
+    // a clock in ms that names no unit meets the record at its start alone
+    let mut lines = text.lines();
+    let head = lines.next().unwrap();
+    let slow = lines.map(|line| {
+        let (t, rest) = line.split_once(',').unwrap();
+        format!("{},{rest}\n", 1000.0 * t.parse::<f64>().unwrap())
+    });
+    let slow = scratch.file("slow.csv", format!("{head}\n{}", slow.collect::<String>()));
+    let answer = run(&format!("attitude {record} --kind rate --against {slow}"));
+    let says = "no attitude behind the start is at a time of ";
+    assert!(answer.code == 1 && answer.err.contains(says), "{}", answer.err);
+    assert!(!answer.err.contains("the budget holds"), "{}", answer.err);
+}
+
+/// A column beside the attitudes of a reference is named.
+#[test]
+fn what_a_reference_holds_and_is_not_read_is_told() {
+    let scratch = Scratch::new("attitude-unread");
+    let record = simulated(&scratch, "rates.csv", "--every 0.05");
+    let text = std::fs::read_to_string(exact(&scratch, 0.05)).unwrap();
+    let (head, rows) = text.split_once('\n').unwrap();
+    let rows: String = rows.lines().map(|row| format!("{row},20\n")).collect();
+    let more = scratch.file("more.csv", format!("{head},lift\n{rows}"));
+    let answer = run(&format!("attitude {record} --kind rate --against {more}"));
+    assert!(answer.code == 0 && answer.err.contains("more.csv: not read: lift"), "{}", answer.err);
 }
 
 #[test]
