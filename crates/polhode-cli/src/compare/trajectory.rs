@@ -14,7 +14,7 @@ use polhode::observe::{Errors, Monitor};
 use polhode::rotation::{Quat, Vec3};
 use polhode::truth::{Ending, LOST, Truth, attitude_error};
 use polhode::units::RateUnit;
-use polhode_files::error::{Error, unexpected, warn};
+use polhode_files::error::{Error, tell, unexpected, warn};
 use polhode_files::text::{short, visible};
 use polhode_files::trajectory;
 
@@ -141,6 +141,9 @@ impl Trajectory {
         for remark in [unread, momenta].into_iter().flatten() {
             warn(&format!("{name}: {remark}"));
         }
+        if let Some(reading) = shown(reading, &as_named(&claims), &columns) {
+            tell("note", &format!("{name}: its rows show how it is read: {reading}"));
+        }
         let has_quaternions = matches!(columns.attitude, Some(Attitudes::Quaternions(_)));
         Ok(Trajectory { name, rows, has_quaternions })
     }
@@ -259,15 +262,37 @@ fn row(columns: &Columns, reading: &Reading, k: usize) -> Option<Row> {
     Some(Row { t: *columns.times.get(k)?, attitude, omega_body })
 }
 
-/// How the columns are read: as their names and flags claim and else as this program writes them, unless the rows are a motion
-/// of the body in another convention, which is what `polhode audit` would say of them; and whether it would name another body.
-fn reading(columns: &Columns, claims: Convention, body: &Body) -> Option<(Reading, bool)> {
+/// As names and flags claim, and else as this program writes trajectories.
+fn as_named(claims: &Convention) -> Reading {
     let mut own = Reading::default();
     own.quaternion = claims.quaternion;
     own.attitude = claims.attitude.or(Some(Direction::BodyToSpace));
     own.omega_frame = claims.omega_frame.or(Some(Frame::Body));
     own.rate_unit = claims.rate_unit.or(Some(RateUnit::RadiansPerSecond));
     own.angles = claims.angles;
+    own
+}
+
+/// The reading of the columns that are there, where it is not the `named` one.
+fn shown(mut reading: Reading, named: &Reading, columns: &Columns) -> Option<Reading> {
+    if columns.rates.is_none() {
+        (reading.omega_frame, reading.rate_unit) = (None, None);
+    }
+    reading.momentum_frame = None;
+    let is_named = [
+        reading.quaternion.is_none() || reading.quaternion == named.quaternion,
+        reading.attitude.is_none() || reading.attitude == named.attitude,
+        reading.angles.is_none() || reading.angles == named.angles,
+        reading.omega_frame.is_none() || reading.omega_frame == named.omega_frame,
+        reading.rate_unit.is_none() || reading.rate_unit == named.rate_unit,
+    ];
+    is_named.contains(&false).then_some(reading)
+}
+
+/// How the columns are read: as their names and flags claim and else as this program writes them, unless the rows are a motion
+/// of the body in another convention, which is what `polhode audit` would say of them; and whether it would name another body.
+fn reading(columns: &Columns, claims: Convention, body: &Body) -> Option<(Reading, bool)> {
+    let mut own = as_named(&claims);
     let is_quaternion = matches!(columns.attitude, Some(Attitudes::Quaternions(_)));
     let is_open = match &columns.attitude {
         Some(Attitudes::Quaternions(_)) => own.quaternion.is_none(),

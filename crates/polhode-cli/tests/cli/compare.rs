@@ -261,6 +261,27 @@ fn what_a_trajectory_holds_and_is_not_compared_is_told() {
     assert_eq!(told(&momenta), format!("warning: {momenta}: its angular momenta are not compared\n"));
 }
 
+/// Rates in deg/s whose names say no unit are read as such, and not in silence.
+#[test]
+fn a_convention_that_rows_show_and_names_do_not_say_is_told() {
+    let scratch = Scratch::new("compare-shown");
+    let text = output(&MOTION.replace("--every 0.5", "--every 0.25"));
+    let right = scratch.file("right.csv", &text);
+    assert_eq!(run(&format!("{TEXTBOOK} {BESIDE} {right}")).err, "");
+    let degrees = with_rates(&text, |_, rates| rates.map(f64::to_degrees));
+    let degrees = scratch.file("degrees.csv", degrees);
+    let answer = run(&format!("{TEXTBOOK} {BESIDE} {degrees}"));
+    let row = &rows(&answer.out)[1];
+    assert!(answer.code == 0 && number(row, "energy_error") < 1e-14, "{row:?}");
+    let says =
+        format!("note: {degrees}: its rows show how it is read: quaternion w,x,y,z; attitude body to space");
+    assert!(
+        answer.err.starts_with(&says) && answer.err.contains("omega in body axes, deg/s"),
+        "{}",
+        answer.err
+    );
+}
+
 #[test]
 fn flags_that_no_trajectory_has_a_use_for_are_refused() {
     let scratch = Scratch::new("compare-flags");
