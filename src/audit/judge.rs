@@ -171,7 +171,10 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
     }
     let tie = (finding.tied > 1).then(|| Tie {
         readings: finding.right[..finding.tied].iter().map(|found| found.reading).collect(),
-        reason: tie_reason(record, finding, &body),
+        reason: match tie_reason(record, finding, &body) {
+            TieReason::Noise if by_motion == Judgement::Wrong => TieReason::Misfit,
+            reason => reason,
+        },
     });
     let resolution = Resolution {
         attitude: record.attitude.as_ref().map(|_| {

@@ -89,6 +89,8 @@ pub enum TieReason {
     MissingColumns,
     /// Noise or digits hide the difference.
     Noise,
+    /// The record is wrong in each of them.
+    Misfit,
 }
 
 /// Readings that the record cannot tell apart.
@@ -318,6 +320,7 @@ impl fmt::Display for TieReason {
             TieReason::Noise => {
                 "noise or digits hide the difference; record more rows, more digits or a faster motion to tell"
             }
+            TieReason::Misfit => "the rows are a motion in none of them, and off alike",
         })
     }
 }

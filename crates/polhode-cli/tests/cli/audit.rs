@@ -436,6 +436,19 @@ fn a_torque_that_is_told_and_does_not_act_is_named() {
     assert_eq!(verdict(&run(&format!("audit {file} {BODY} {told} --format json")))["verdict"], "right");
 }
 
+/// Neither noise nor digits hide which of two readings is that of rows that are wrong in both.
+#[test]
+fn readings_that_are_wrong_alike_are_not_laid_to_noise() {
+    let scratch = Scratch::new("audit-misfit");
+    let motion = "propagate --moments 1,2,3 --omega 0.4,1,-0.3 --until 20 --every 0.05 --fields t,q,omega --format csv";
+    let mistaken = output(motion).replace("q_w,q_x,q_y,q_z", "q_z,q_w,q_x,q_y");
+    let file = scratch.file("mistaken.csv", mistaken);
+    let answer = run(&format!("audit {file} --moments 1,2,3 --format csv"));
+    let says = "2 readings fit alike: the rows are a motion in none of them";
+    assert!(answer.code == 1 && answer.err.contains(says), "{answer:?}");
+    assert!(!answer.err.contains("noise or digits"), "{}", answer.err);
+}
+
 /// What is not read is not right; what stands twice is not read.
 #[test]
 fn columns_that_are_not_read_are_named_and_none_stands_twice() {
