@@ -113,7 +113,7 @@ impl<'t> Section<'t> {
     fn moment_of(&self, key: &str, value: &Spanned<DeValue<'_>>, epoch: Option<Epoch>) -> Result<f64, Error> {
         let text = match (value.get_ref(), epoch) {
             (DeValue::String(text), _) => text.as_ref(),
-            (DeValue::Integer(integer), Some(_)) if integer.radix() == 10 => integer.as_str(),
+            (DeValue::Integer(integer), _) if integer.radix() == 10 => integer.as_str(),
             (DeValue::Float(float), Some(_)) => float.as_str(),
             _ => return self.number(key, value),
         };

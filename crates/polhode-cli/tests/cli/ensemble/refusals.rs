@@ -79,6 +79,7 @@ fn specifications_are_refused_with_line_value_and_law() {
         ("a tolerance below rounding", "seed = 7", "method = \"dop853\"\nstep = 0.5\ntolerance = 1e-20"),
         ("a negative tolerance", "seed = 7", "method = \"dop853\"\nstep = 0.5\ntolerance = -1e-9"),
         ("a unit of time that is none", "times = [0.0, 1.0, 100.0]", "times = [\"5 fortnights\"]"),
+        ("a time that is no double", "times = [0.0, 1.0, 100.0]", "times = [1, 9007199254740993]"),
         (
             "a method that is not for a force",
             "[run]",
