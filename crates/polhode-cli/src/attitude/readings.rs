@@ -56,6 +56,8 @@ pub(super) struct Readings {
     segments: usize,
     /// Time of the last sample, s.
     last: Option<f64>,
+    /// Names of the columns that are not read.
+    unused: Vec<String>,
     found: Findings,
 }
 
@@ -102,6 +104,7 @@ impl KindArguments {
             restarts: self.restart,
             segments: 0,
             last: None,
+            unused: Vec::new(),
             found: Findings::default(),
         })
     }
@@ -149,6 +152,11 @@ impl Readings {
         };
         self.found.add(&part.record, &part.spikes);
         self.check()?;
+        for (_, name) in part.record.unused_columns() {
+            if !self.unused.contains(name) {
+                self.unused.push(name.clone());
+            }
+        }
         if self.kind != Kind::Rate {
             self.found.add_intervals(&part.record, self.last.filter(|_| part.continues));
         }
@@ -212,6 +220,9 @@ impl Readings {
                     "{name}: no unit of the readings is named, they are read as {read}; if it is another, {other}"
                 ),
             );
+        }
+        if !self.unused.is_empty() {
+            warn(&format!("{}: columns not used: {}", self.name(), self.unused.join(", ")));
         }
         self.found.warnings("line").iter().for_each(|warning| warn(warning));
         if self.segments > 1 {

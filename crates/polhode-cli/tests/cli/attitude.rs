@@ -352,11 +352,21 @@ fn one_wild_row_and_a_start_alone_are_no_agreement() {
     assert!(!answer.err.contains("the budget holds"), "{}", answer.err);
 }
 
-/// A column beside the attitudes of a reference is named.
+/// Columns beside the readings, and beside the attitudes of a reference, are named.
 #[test]
-fn what_a_reference_holds_and_is_not_read_is_told() {
+fn what_a_file_holds_and_is_not_read_is_told() {
     let scratch = Scratch::new("attitude-unread");
     let record = simulated(&scratch, "rates.csv", "--every 0.05");
+    let rates = std::fs::read_to_string(&record).unwrap();
+    let (head, rows) = rates.split_once('\n').unwrap();
+    let rows: String = rows.lines().map(|row| format!("{row},20\n")).collect();
+    let warm = scratch.file("warm.csv", format!("{head},temperature\n{rows}"));
+    let answer = run(&format!("attitude {warm} --kind rate"));
+    assert!(
+        answer.code == 0 && answer.err.contains("warm.csv: columns not used: temperature"),
+        "{}",
+        answer.err
+    );
     let text = std::fs::read_to_string(exact(&scratch, 0.05)).unwrap();
     let (head, rows) = text.split_once('\n').unwrap();
     let rows: String = rows.lines().map(|row| format!("{row},20\n")).collect();
