@@ -40,6 +40,22 @@ fn help_is_everywhere_and_fits_into_80_columns() {
     assert!(output("--version").starts_with("polhode "));
 }
 
+/// Where `-` is read from standard input it names no file to write either.
+#[test]
+fn standard_output_is_no_file_of_that_name() {
+    let scratch = Scratch::new("no-file");
+    for line in [
+        "propagate --moments 1,2,3 --omega 0.4,1,-0.3 --times 1 --out -",
+        "motion --moments 1,2,3 --omega 0.4,1,-0.3 --out -",
+        "compare --moments 1,2,3 --omega 0.4,1,-0.3 --until 1 --methods rk4 --steps 0.5 --out -",
+    ] {
+        let answer = polhode(&words(line), &scratch.0);
+        assert_eq!((answer.code, answer.out.as_str()), (2, ""), "{line}: {}", answer.err);
+        assert!(answer.err.contains("--out: '-': stands for standard output"), "{line}: {}", answer.err);
+    }
+    assert!(scratch.names().is_empty());
+}
+
 /// What the experiments read and write, in a folder of its own.
 fn project(scratch: &Scratch) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");

@@ -39,9 +39,13 @@ impl Output {
     /// To the file that `flag` names.
     ///
     /// # Errors
-    /// A place that cannot be written; a file that this process reads, under whichever name, or that another flag names too. What
-    /// is read only after this is refused in [`finish`](Self::finish).
+    /// A place that cannot be written, or standard output as `-`; a file that this process reads, under whichever name, or that
+    /// another flag names too. What is read only after this is refused in [`finish`](Self::finish).
     pub fn to_file(flag: &'static str, path: &Path) -> Result<Self, Error> {
+        if path.as_os_str() == "-" {
+            let remedy = if flag == "--out" { "leave it out, and rows go there" } else { "name a file" };
+            return Err(Error::input(flag, "-", "stands for standard output, which is no file", remedy));
+        }
         check_is_no_input(flag, path)?;
         claimed::claim(flag, path)?;
         let file = Replacement::new(path).map_err(|reason| unwritable(flag, path, &reason))?;
