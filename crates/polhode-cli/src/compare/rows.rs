@@ -78,6 +78,13 @@ impl Compare {
         };
         set("method", trajectory.name.clone().into());
         set("status", found.ending.by_clock(self.start_time).to_string().into());
+        if let Some(angle) = found.elsewhere {
+            warn(&format!(
+                "{}: its first attitude is {angle:.2} rad off the true motion: another start, another body or another convention; \
+                 `polhode audit` tells more",
+                trajectory.name
+            ));
+        }
         if let Some(share) = found.contradiction {
             set("status", "rates contradict".into());
             warn(&format!(

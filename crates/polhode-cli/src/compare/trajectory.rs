@@ -61,6 +61,8 @@ pub(super) struct Off {
     pub(super) true_flips: Option<u64>,
     /// What its rates are off those of the true motion, root mean square as a share of these, where its attitudes contradict it.
     pub(super) contradiction: Option<f64>,
+    /// How far its first row is off, rad, where its attitude is lost there already.
+    pub(super) elsewhere: Option<f64>,
 }
 
 impl Trajectory {
@@ -168,6 +170,7 @@ impl Trajectory {
             invariants: None,
             true_flips: None,
             contradiction: None,
+            elsewhere: None,
         };
         // squares of what rates are off, and of the true ones; the angle that these turn by, rad
         let [mut apart, mut squared, mut turned]: [f64; 3] = [0.0; 3];
@@ -196,9 +199,11 @@ impl Trajectory {
             let state = State { attitude, momentum_body: Vec3::zero() };
             let point = body.enter(&state).map_err(unexpected)?;
             off.attitude_error = attitude_error(point.attitude, exact.attitude);
+            let is_first = off.at.is_none();
             (off.largest, off.at) = (off.largest.max(off.attitude_error), Some(elapsed.hi()));
             if off.attitude_error > LOST {
                 off.ending = Ending::Lost(elapsed.hi());
+                off.elsewhere = is_first.then_some(off.attitude_error);
                 if followed.is_none() {
                     break;
                 }

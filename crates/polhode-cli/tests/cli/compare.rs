@@ -141,7 +141,10 @@ fn a_trajectory_of_another_program_is_a_row() {
     let line = format!(
         "{TEXTBOOK} --until 20 --methods rk4 --steps 0.5 --trajectory {right} --trajectory {mistaken}"
     );
-    let found = rows(&output(&line));
+    let answer = run(&line);
+    let elsewhere = "mistaken.csv: its first attitude is 3.14 rad off the true motion";
+    assert!(answer.code == 0 && answer.err.contains(elsewhere), "{}", answer.err);
+    let found = rows(&answer.out);
     assert_eq!(cell(&found[1], "method"), right);
     assert!(number(&found[1], "attitude_error") < 1e-14);
     assert_eq!(number(&found[1], "attitude_time"), 20.0);
