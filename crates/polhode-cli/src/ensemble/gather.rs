@@ -244,18 +244,18 @@ fn together(shards: &[Finished]) -> Result<Shares, Error> {
     Ok(all)
 }
 
-/// Whether a folder holds results of the run `identity`, with every file that its record names.
+/// How many members failed in the run `identity`, where a folder holds its results, with every file that its record names.
 ///
 /// # Errors
 /// A file that is not as the run wrote it.
-pub(super) fn has_results(folder: &Path, identity: &Identity) -> Result<bool, Error> {
+pub(super) fn has_results(folder: &Path, identity: &Identity) -> Result<Option<u64>, Error> {
     let is_whole = |record: &Record| {
         let mut names = record.files.keys().chain(record.sha256.keys());
         record.is_results() && names.all(|name| folder.join(name).is_file())
     };
     let record = record_of_results(folder)?.filter(|record| record.identity == *identity);
     match record.filter(is_whole) {
-        Some(record) => unchanged(folder, &record).map(|()| true),
-        None => Ok(false),
+        Some(record) => unchanged(folder, &record).map(|()| Some(record.failed)),
+        None => Ok(None),
     }
 }

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use polhode::num::Instructions;
-use polhode_files::error::{Error, tell, unexpected, warn};
+use polhode_files::error::{Error, tell, warn};
 use polhode_files::npy;
 use polhode_pages::output::{MARK, Staging, emit};
 
@@ -174,9 +174,13 @@ impl Ensemble {
                 "gather them with `polhode gather`, or name another folder",
             ));
         }
-        if gather::has_results(&self.out, &identity)? {
-            tell("note", &format!("{} holds the results of this run already", self.out.display()));
-            return Ok(());
+        if let Some(failed) = gather::has_results(&self.out, &identity)? {
+            let of_failed = match failed {
+                0 => String::new(),
+                _ => format!(", in which {failed} of {} members failed", identity.members),
+            };
+            tell("note", &format!("{} holds the results of this run already{of_failed}", self.out.display()));
+            return check_left(failed, identity.members, &self.out);
         }
         self.check_room(spec, Shard::WHOLE)?;
         let means = self.means();
@@ -319,9 +323,6 @@ fn warn_of(shares: &Shares, members: u64) {
 fn said(results: &Results, shares: &Shares, identity: &Identity, out: &Path) -> Result<(), Error> {
     let members = identity.members;
     warn_of(shares, members);
-    let start = shares.times.first();
-    let none_left = shares.failures.len() as u64 == members
-        && shares.failures.iter().all(|failure| Some(&failure.t) == start);
     let draws = shares.draws;
     let redrawn = if draws > members {
         format!("{} of {draws} draws belong to no body and were drawn again.\n", draws - members)
@@ -332,8 +333,13 @@ fn said(results: &Results, shares: &Shares, identity: &Identity, out: &Path) -> 
     let event = identity.event.as_ref().map(|event| passages::sentence(&shares.passages, event, last));
     let redrawn = redrawn + &event.unwrap_or_default();
     emit(&format!("{}\n{redrawn}Written to {}\n", results.shown(), out.display()), None)?;
-    if none_left {
-        return Err(unexpected(format!("{}: no member has a row; see failures.csv", out.display())));
+    check_left(shares.failures.len() as u64, members, out)
+}
+
+/// Fails where no member came to the end.
+fn check_left(failed: u64, members: u64, out: &Path) -> Result<(), Error> {
+    if failed < members {
+        return Ok(());
     }
-    Ok(())
+    Err(Error::Failed(format!("{}: every member failed; see failures.csv", out.display())))
 }

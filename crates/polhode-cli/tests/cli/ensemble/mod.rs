@@ -320,6 +320,25 @@ fn a_member_whose_errors_are_beyond_a_double_fails() {
     assert_eq!(column(&out, "summary.csv", "energy_error_max"), [0.0, 0.0]);
 }
 
+/// Of a run that no member of comes to its end the exit code is 1, although all have the row of the start, and again where its results
+/// stand already.
+#[test]
+fn a_run_of_which_every_member_fails_is_no_success() {
+    let scratch = Scratch::new("ensemble-none-left");
+    scratch.file("members.csv", "omega_x,omega_y,omega_z\n2e12,1e12,1e12\n1e12,1e12,1e12\n");
+    let spec = "[body]\nmoments = [1, 2, 2.5]\n[spread]\nmembers_file = \"members.csv\"\n[run]\n\
+                method = \"rk4\"\nstep = 0.5\ntimes = [0, 0.5]\n";
+    scratch.file("spec.toml", spec);
+    for says in ["2 of 2 members failed, the first of them", "already, in which 2 of 2 members failed"] {
+        let answer = polhode(&words("ensemble spec.toml --out out"), &scratch.0);
+        assert_eq!(answer.code, 1, "{}", answer.err);
+        for part in [says, "every member failed; see failures.csv"] {
+            assert!(answer.err.contains(part), "{part}: {}", answer.err);
+        }
+    }
+    assert_eq!(column(&scratch.0.join("out"), "summary.csv", "members"), [2.0, 0.0]);
+}
+
 #[test]
 fn rows_of_members_that_are_left_out_are_told() {
     let scratch = Scratch::new("ensemble-fewer");
