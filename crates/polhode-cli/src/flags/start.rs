@@ -8,6 +8,7 @@ use polhode::rotation::{CelestialFrame, EulerSequence, Quat, Vec3};
 use polhode_files::error::{Error, tell, warn};
 use polhode_files::instant::seconds_in;
 use polhode_files::numbers::{number, numbers, quaternion, turn};
+use polhode_files::text::short;
 
 use crate::flags::body::{BodyArguments, PublishedStart, note_density};
 use crate::flags::tumbling::TumblingArguments;
@@ -149,7 +150,8 @@ impl StartArguments {
             || self.tumbling.is_given()
     }
 
-    /// Refuses a unit of angles and a sequence of them that no flag uses; whether a command uses either elsewhere.
+    /// Refuses a unit of angles and a sequence of them that no flag uses; whether a command uses either elsewhere. Angles without a unit
+    /// that are none of rad, as it seems, are told.
     pub(crate) fn check_angles(&self, uses_unit: bool, uses_sequence: bool) -> Result<(), Error> {
         let has_angles = self.angles.is_some();
         if let Some(Factor(unit)) = self.angle_unit
@@ -166,6 +168,15 @@ impl StartArguments {
             let (rule, remedy) =
                 ("is the sequence of angles, and none are given", "leave it out, or give --angles");
             return Err(Error::input("--euler", &sequence.to_string(), rule, remedy));
+        }
+        let mut typed = self.angles.iter().flatten().chain(self.tumbling.angles());
+        if let (None, Some(angle)) =
+            (self.angle_unit, typed.find(|angle| angle.abs() > core::f64::consts::TAU))
+        {
+            let angle = short(*angle);
+            warn(&format!(
+                "the angle {angle} is taken as rad, beyond a whole turn; --angle-unit deg says degrees"
+            ));
         }
         Ok(())
     }

@@ -125,9 +125,14 @@ impl TumblingArguments {
         self.periods.is_some()
     }
 
+    /// The angles of all flags, as they were typed.
+    pub(crate) fn angles(&self) -> impl Iterator<Item = &f64> {
+        self.pole.iter().flatten().chain(self.phases.iter().flatten())
+    }
+
     /// Whether a flag has angles.
     pub(crate) fn has_angles(&self) -> bool {
-        self.pole.is_some() || self.phases.is_some()
+        self.angles().next().is_some()
     }
 
     /// The elements that the flags state, if they do.

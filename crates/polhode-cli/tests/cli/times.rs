@@ -115,6 +115,10 @@ fn euler_angles_are_columns_and_a_start() {
     let turned = output(&format!("{degrees} --angle-unit deg"));
     let last = |text: &str| text.rsplit(',').next().unwrap().trim().parse::<f64>().unwrap();
     assert!((last(&turned) + 0.2).abs() < 1e-15, "{turned}");
+    // a unit that was forgotten
+    let silent = run(&degrees);
+    let says = "17.188733853924695 is taken as rad, beyond a whole turn; --angle-unit deg";
+    assert!(silent.code == 0 && silent.err.contains(says), "{silent:?}");
     refused(&with("--times 0 --euler zxx"), &["--euler", "zxx", "such as zxz"]);
     refused(&with("--times 0 --euler zyx --fields t,q"), &["--euler: 'zyx'", "none are given"]);
     refused(&with("--times 0 --angles 1,2,3 --attitude 1,0,0,0"), &["--angles", "--attitude"]);
