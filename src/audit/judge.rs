@@ -271,6 +271,10 @@ fn tie_reason(record: &Trajectory, finding: &Finding, body: &Body) -> TieReason 
     }
     let every: Vec<usize> = (0..record.times.len()).step_by(record.times.len().div_ceil(100)).collect();
     let rows = states(record, &first, body, &every);
+    // attitudes that turn beside rates that are zero
+    if !rows.is_empty() && rows.iter().all(|row| row.omega.norm_squared() == 0.0) {
+        return TieReason::Misfit;
+    }
     let start = rows.first().map_or(Vec3::zero(), |row| row.omega);
     let turned = rows.iter().fold(0.0_f64, |most, row| {
         most.max(row.omega.cross(start).norm() / (row.omega.norm() * start.norm()).max(f64::MIN_POSITIVE))

@@ -447,6 +447,13 @@ fn readings_that_are_wrong_alike_are_not_laid_to_noise() {
     let says = "2 readings fit alike: the rows are a motion in none of them";
     assert!(answer.code == 1 && answer.err.contains(says), "{answer:?}");
     assert!(!answer.err.contains("noise or digits"), "{}", answer.err);
+    // nor does a body whose rates were never written spin about one axis
+    let zero = output(motion).lines().enumerate().fold(String::new(), |text, (k, line)| {
+        let cells: Vec<&str> = line.split(',').collect();
+        text + &if k == 0 { format!("{line}\n") } else { format!("{},0,0,0\n", cells[..5].join(",")) }
+    });
+    let answer = run(&format!("audit {} --moments 1,2,3 --format csv", scratch.file("zero.csv", zero)));
+    assert!(answer.code == 1 && answer.err.contains("the rows are a motion in none of them"), "{answer:?}");
 }
 
 /// What is not read is not right; what stands twice is not read.
