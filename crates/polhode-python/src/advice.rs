@@ -12,6 +12,8 @@ use crate::arrays::Order;
 use crate::bodies::{Body, Start};
 use crate::calm::aside;
 use crate::error::{of, refused, warn};
+use crate::scalars::{maybe, number};
+use crate::units::finite;
 
 /// The quickest method that meets a demand, and the others that do.
 #[pyclass(frozen, module = "polhode")]
@@ -162,20 +164,20 @@ pub(crate) fn advise(
     body: &Bound<'_, PyAny>,
     omega: Option<&Bound<'_, PyAny>>,
     attitude: Option<&Bound<'_, PyAny>>,
-    until: f64,
-    attitude_error: f64,
+    #[pyo3(from_py_with = number::until)] until: f64,
+    #[pyo3(from_py_with = number::attitude_error)] attitude_error: f64,
     momentum: Option<&Bound<'_, PyAny>>,
-    energy_error: Option<f64>,
-    budget: Option<f64>,
+    #[pyo3(from_py_with = maybe::energy_error)] energy_error: Option<f64>,
+    #[pyo3(from_py_with = maybe::budget)] budget: Option<f64>,
     exclude: Option<Vec<String>>,
-    start_time: f64,
+    #[pyo3(from_py_with = number::start_time)] start_time: f64,
     check: bool,
     progress: Option<Py<PyAny>>,
     order: &str,
 ) -> PyResult<Advice> {
     let body = Body::of("body", body)?;
-    let order = Order::of(order)?;
-    let start = body.start(&Start { omega, attitude, momentum, time: start_time, order })?;
+    let (order, time) = (Order::of(order)?, finite("start_time", start_time)?);
+    let start = body.start(&Start { omega, attitude, momentum, time, order })?;
     let start = body.body.leave(&start);
     let mut demand = Demand::new(until, attitude_error);
     (demand.energy_error, demand.budget, demand.start_time) = (energy_error, budget, start_time);

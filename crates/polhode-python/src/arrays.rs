@@ -28,6 +28,10 @@ impl Numbers {
             }
             return Ok(Numbers { name, shape: Vec::new(), values: vec![number] });
         }
+        // of which numpy makes NaN
+        if value.is_none() {
+            return Err(refused(format!("{name}: None; it must be a number, or an array of numbers")));
+        }
         // an array of doubles one after the other needs nothing made of it; between those of a field of a structured array there may be
         // no whole number of doubles
         let given: Option<PyReadonlyArrayDyn<'_, f64>> =

@@ -12,6 +12,7 @@ use pyo3::types::PyDict;
 use crate::arrays::{Numbers, Order, array, rotation, scipy_rotation};
 use crate::calm::aside;
 use crate::error::{of, refused, warn};
+use crate::scalars::{maybe, number};
 use crate::shown;
 use crate::tables::Record;
 use crate::through::free;
@@ -58,10 +59,10 @@ pub(crate) fn attitude(
     kind: &str,
     start: Option<&Bound<'_, PyAny>>,
     rule: &str,
-    noise: Option<f64>,
-    bias: f64,
-    scale_error: f64,
-    stamps: f64,
+    #[pyo3(from_py_with = maybe::noise)] noise: Option<f64>,
+    #[pyo3(from_py_with = number::bias)] bias: f64,
+    #[pyo3(from_py_with = number::scale_error)] scale_error: f64,
+    #[pyo3(from_py_with = number::stamps)] stamps: f64,
     body: Option<&Bound<'_, PyAny>>,
     order: &str,
 ) -> PyResult<Attitudes> {

@@ -18,6 +18,7 @@ use crate::bodies::Body;
 use crate::calm::aside;
 use crate::error::{of, refused};
 use crate::json::python;
+use crate::scalars::number;
 use crate::shown;
 use crate::tables::Trajectory;
 use crate::units::named_rate;
@@ -129,7 +130,7 @@ pub(crate) fn verdict_on(
     moments: Option<&Bound<'_, PyAny>>,
     inertia: Option<&Bound<'_, PyAny>>,
     body: Option<&Bound<'_, PyAny>>,
-    tolerance: f64,
+    #[pyo3(from_py_with = number::tolerance)] tolerance: f64,
     noise: Option<&Bound<'_, PyAny>>,
     order: Option<&str>,
     direction: Option<&str>,

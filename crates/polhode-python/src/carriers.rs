@@ -17,6 +17,7 @@ use crate::error::{of, refused, warn};
 use crate::estimates::{Estimate, named, six};
 use crate::fits::{model, priors, recorded};
 use crate::masses::MassProperties;
+use crate::scalars::maybe;
 use crate::units::positive;
 
 /// An absolute tensor and how far to trust it, kg m^2, sensor axes.
@@ -199,20 +200,20 @@ pub(crate) fn fitted_carrier(
     object: Option<&Bound<'_, PyAny>>,
     object_proof: Option<&Bound<'_, PyAny>>,
     proof_body: Option<&Bound<'_, PyAny>>,
-    proof_sigma: Option<f64>,
-    carrier_mass: Option<f64>,
-    object_mass: Option<f64>,
+    #[pyo3(from_py_with = maybe::proof_sigma)] proof_sigma: Option<f64>,
+    #[pyo3(from_py_with = maybe::carrier_mass)] carrier_mass: Option<f64>,
+    #[pyo3(from_py_with = maybe::object_mass)] object_mass: Option<f64>,
     object_at: Option<&Bound<'_, PyAny>>,
     unknown_wheel: bool,
     torque: &str,
-    radius: Option<f64>,
-    noise: Option<f64>,
-    gyro_bias: Option<f64>,
-    gyro_scale: Option<f64>,
-    gyro_axis_scales: Option<f64>,
-    gyro_misalignment: Option<f64>,
-    gyro_skew: Option<f64>,
-    quantum: Option<f64>,
+    #[pyo3(from_py_with = maybe::radius)] radius: Option<f64>,
+    #[pyo3(from_py_with = maybe::noise)] noise: Option<f64>,
+    #[pyo3(from_py_with = maybe::gyro_bias)] gyro_bias: Option<f64>,
+    #[pyo3(from_py_with = maybe::gyro_scale)] gyro_scale: Option<f64>,
+    #[pyo3(from_py_with = maybe::gyro_axis_scales)] gyro_axis_scales: Option<f64>,
+    #[pyo3(from_py_with = maybe::gyro_misalignment)] gyro_misalignment: Option<f64>,
+    #[pyo3(from_py_with = maybe::gyro_skew)] gyro_skew: Option<f64>,
+    #[pyo3(from_py_with = maybe::quantum)] quantum: Option<f64>,
     trust_units: bool,
 ) -> PyResult<CarrierEstimate> {
     let place = Numbers::maybe("object_at", object_at)?.map(Numbers::vector).transpose()?;

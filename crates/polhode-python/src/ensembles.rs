@@ -15,13 +15,15 @@ use crate::bodies::Body;
 use crate::calm::aside_telling;
 use crate::error::{of, refused};
 use crate::runs::named;
+use crate::scalars::{number, threads};
 use crate::states::States;
 
 /// Bodies with their starts, propagated together on all cores. Members do not act on each other.
 ///
 /// `body` is one for all, as `Body` takes it, with its forces; or `moments` (n, 3) or `tensors` (n, 3, 3) are those of each member.
 /// `omega`, rad/s, or `momentum`, kg m^2/s, body axes: (n, 3), or (3,) for all; `attitude`: (n, 4), or (4,) for all, or a scipy rotation;
-/// without one that of the published motion of a body of the catalogue, else the identity.
+/// without one that of the published motion of a body of the catalogue, else the identity. `threads`: how many at most; 0 for one on each
+/// core.
 ///
 /// >>> import numpy, polhode
 /// >>> omega = [0.4, 1, -0.3] + numpy.random.default_rng(1).normal(0, 0.01, (1000, 3))
@@ -48,7 +50,7 @@ impl Ensemble {
         momentum: Option<&Bound<'_, PyAny>>,
         moments: Option<&Bound<'_, PyAny>>,
         tensors: Option<&Bound<'_, PyAny>>,
-        threads: usize,
+        #[pyo3(from_py_with = threads)] threads: usize,
         order: &str,
     ) -> PyResult<Self> {
         let order = Order::of(order)?;
@@ -161,8 +163,8 @@ impl Ensemble {
         py: Python<'_>,
         method: &str,
         times: &Bound<'_, PyAny>,
-        step: f64,
-        start_time: f64,
+        #[pyo3(from_py_with = number::step)] step: f64,
+        #[pyo3(from_py_with = number::start_time)] start_time: f64,
         progress: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<States> {
         let times = Numbers::of("times", times)?.list()?;

@@ -19,6 +19,7 @@ use crate::columns;
 use crate::error::{refused, warn};
 use crate::links::{Link, Links};
 use crate::masses::{MassProperties, amount, closing};
+use crate::scalars::maybe;
 use crate::tables::{Rows, record_of, trajectories};
 use crate::units::{named_length, named_rate, named_time, positive, share};
 
@@ -108,15 +109,15 @@ pub(crate) fn read<'py>(
     columns: Option<&str>,
     time_unit: Option<&Bound<'py, PyAny>>,
     rate_unit: Option<&str>,
-    sample_rate: Option<f64>,
+    #[pyo3(from_py_with = maybe::sample_rate)] sample_rate: Option<f64>,
     axes: Option<&str>,
-    skip_rows: Option<f64>,
-    mass: Option<f64>,
-    density: Option<f64>,
+    #[pyo3(from_py_with = maybe::skip_rows)] skip_rows: Option<f64>,
+    #[pyo3(from_py_with = maybe::mass)] mass: Option<f64>,
+    #[pyo3(from_py_with = maybe::density)] density: Option<f64>,
     length_unit: Option<&Bound<'py, PyAny>>,
     close: Option<&str>,
-    shell: Option<f64>,
-    weld: Option<f64>,
+    #[pyo3(from_py_with = maybe::shell)] shell: Option<f64>,
+    #[pyo3(from_py_with = maybe::weld)] weld: Option<f64>,
     group: Option<String>,
     root: Option<PathBuf>,
 ) -> PyResult<Bound<'py, PyAny>> {

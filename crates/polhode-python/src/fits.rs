@@ -15,6 +15,7 @@ use crate::bodies::inertia;
 use crate::calm::aside;
 use crate::error::{of, refused, warn};
 use crate::estimates::Estimate;
+use crate::scalars::maybe;
 use crate::tables::Record;
 use crate::units::positive;
 
@@ -56,25 +57,25 @@ pub(crate) fn fitted(
     t: &Bound<'_, PyAny>,
     rates: Option<&Bound<'_, PyAny>>,
     attitude: Option<&Bound<'_, PyAny>>,
-    attitude_noise: Option<f64>,
+    #[pyo3(from_py_with = maybe::attitude_noise)] attitude_noise: Option<f64>,
     order: &str,
     windows: Option<&Bound<'_, PyAny>>,
     wheel: Option<&Bound<'_, PyAny>>,
     applied_torque: Option<&Bound<'_, PyAny>>,
     torque: &str,
-    radius: Option<f64>,
-    noise: Option<f64>,
-    trace: Option<f64>,
-    momentum: Option<f64>,
-    twice_energy: Option<f64>,
-    gyro_bias: Option<f64>,
-    gyro_scale: Option<f64>,
-    gyro_axis_scales: Option<f64>,
-    gyro_misalignment: Option<f64>,
-    gyro_skew: Option<f64>,
-    quantum: Option<f64>,
+    #[pyo3(from_py_with = maybe::radius)] radius: Option<f64>,
+    #[pyo3(from_py_with = maybe::noise)] noise: Option<f64>,
+    #[pyo3(from_py_with = maybe::trace)] trace: Option<f64>,
+    #[pyo3(from_py_with = maybe::momentum)] momentum: Option<f64>,
+    #[pyo3(from_py_with = maybe::twice_energy)] twice_energy: Option<f64>,
+    #[pyo3(from_py_with = maybe::gyro_bias)] gyro_bias: Option<f64>,
+    #[pyo3(from_py_with = maybe::gyro_scale)] gyro_scale: Option<f64>,
+    #[pyo3(from_py_with = maybe::gyro_axis_scales)] gyro_axis_scales: Option<f64>,
+    #[pyo3(from_py_with = maybe::gyro_misalignment)] gyro_misalignment: Option<f64>,
+    #[pyo3(from_py_with = maybe::gyro_skew)] gyro_skew: Option<f64>,
+    #[pyo3(from_py_with = maybe::quantum)] quantum: Option<f64>,
     prior: Option<&Bound<'_, PyAny>>,
-    prior_sigma: Option<f64>,
+    #[pyo3(from_py_with = maybe::prior_sigma)] prior_sigma: Option<f64>,
     prior_shape: bool,
     trust_units: bool,
 ) -> PyResult<Estimate> {

@@ -8,6 +8,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, array};
 use crate::error::{of, refused};
+use crate::scalars::number;
 
 /// A torque or a potential that acts on a body; all add up.
 #[pyclass(frozen, module = "polhode", from_py_object)]
@@ -86,7 +87,10 @@ pub(crate) fn gravity(weight_moment: &Bound<'_, PyAny>) -> PyResult<Force> {
 /// The gravity gradient on an orbit with the mean motion, rad/s, in the x-y plane of space, perigee on +x at t = 0.
 #[pyfunction]
 #[pyo3(signature = (mean_motion, eccentricity = 0.0))]
-pub(crate) fn gravity_gradient(mean_motion: f64, eccentricity: f64) -> PyResult<Force> {
+pub(crate) fn gravity_gradient(
+    #[pyo3(from_py_with = number::mean_motion)] mean_motion: f64,
+    #[pyo3(from_py_with = number::eccentricity)] eccentricity: f64,
+) -> PyResult<Force> {
     body::Force::gravity_gradient(mean_motion, eccentricity).map(gradient).map_err(refused)
 }
 
@@ -101,10 +105,10 @@ pub(crate) fn gravity_gradient(mean_motion: f64, eccentricity: f64) -> PyResult<
 #[pyfunction]
 #[pyo3(signature = (gm, periapsis, eccentricity, time = 0.0, plane = None))]
 pub(crate) fn gravity_gradient_on_conic(
-    gm: f64,
-    periapsis: f64,
-    eccentricity: f64,
-    time: f64,
+    #[pyo3(from_py_with = number::gm)] gm: f64,
+    #[pyo3(from_py_with = number::periapsis)] periapsis: f64,
+    #[pyo3(from_py_with = number::eccentricity)] eccentricity: f64,
+    #[pyo3(from_py_with = number::time)] time: f64,
     plane: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Force> {
     let angles = plane.map(|angles| vector("plane", angles)).transpose()?;
@@ -129,7 +133,7 @@ pub(crate) fn gravity_gradient_on_conic(
 /// Body(principal moments 0.61, 0.96, 1; forces: gravity gradient)
 #[pyfunction]
 pub(crate) fn gravity_gradient_on_table(
-    gm: f64,
+    #[pyo3(from_py_with = number::gm)] gm: f64,
     t: &Bound<'_, PyAny>,
     places: &Bound<'_, PyAny>,
 ) -> PyResult<Force> {
@@ -154,7 +158,10 @@ pub(crate) fn torque_space(torque: &Bound<'_, PyAny>) -> PyResult<Force> {
 /// Drag: the torque -linear w - quadratic |w| w of the angular velocity w; N m s and N m s^2.
 #[pyfunction]
 #[pyo3(signature = (linear, quadratic = 0.0))]
-pub(crate) fn drag(linear: f64, quadratic: f64) -> PyResult<Force> {
+pub(crate) fn drag(
+    #[pyo3(from_py_with = number::linear)] linear: f64,
+    #[pyo3(from_py_with = number::quadratic)] quadratic: f64,
+) -> PyResult<Force> {
     body::Force::drag(linear, quadratic).map(Force::from).map_err(refused)
 }
 

@@ -26,6 +26,7 @@ mod parts;
 mod phases;
 mod runs;
 mod samples;
+mod scalars;
 mod shown;
 mod states;
 mod tables;

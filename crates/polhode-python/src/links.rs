@@ -13,6 +13,7 @@ use pyo3::types::{PyIterator, PyList};
 use crate::arrays::{Numbers, array, matrix};
 use crate::error::refused;
 use crate::masses::MassProperties;
+use crate::scalars::maybe;
 
 /// A body as a file or an array states it, with what the examination of its tensor found.
 #[pyclass(frozen, module = "polhode")]
@@ -129,7 +130,7 @@ impl Link {
 #[pyo3(signature = (tensor, *, mass = None, center_of_mass = None, extents = None))]
 pub(crate) fn diagnose(
     tensor: &Bound<'_, PyAny>,
-    mass: Option<f64>,
+    #[pyo3(from_py_with = maybe::mass)] mass: Option<f64>,
     center_of_mass: Option<&Bound<'_, PyAny>>,
     extents: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<Link> {

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, Order, array, matrix, rotation};
 use crate::error::{of, refused};
+use crate::scalars::{maybe, number};
 
 /// Mass, kg, centre of mass, m, and inertia tensor about it, kg m^2, in the axes of one frame. Points, rods and plates have them too.
 ///
@@ -26,7 +27,7 @@ impl MassProperties {
     #[new]
     #[pyo3(signature = (mass, center_of_mass, tensor, *, about = None))]
     fn new(
-        mass: f64,
+        #[pyo3(from_py_with = number::mass)] mass: f64,
         center_of_mass: &Bound<'_, PyAny>,
         tensor: &Bound<'_, PyAny>,
         about: Option<&Bound<'_, PyAny>>,
@@ -142,8 +143,8 @@ pub(crate) fn amount(mass: Option<f64>, density: Option<f64>) -> PyResult<Amount
 pub(crate) fn solid(
     name: &str,
     sizes: &Bound<'_, PyAny>,
-    mass: Option<f64>,
-    density: Option<f64>,
+    #[pyo3(from_py_with = maybe::mass)] mass: Option<f64>,
+    #[pyo3(from_py_with = maybe::density)] density: Option<f64>,
 ) -> PyResult<MassProperties> {
     let sizes = Numbers::of("sizes", sizes)?.list()?;
     let solid = Solid::named(name, &sizes).map_err(refused)?;
@@ -172,8 +173,8 @@ pub(crate) fn closing(name: Option<&str>) -> PyResult<Option<Closing>> {
 pub(crate) fn mesh(
     vertices: &Bound<'_, PyAny>,
     triangles: &Bound<'_, PyAny>,
-    mass: Option<f64>,
-    density: Option<f64>,
+    #[pyo3(from_py_with = maybe::mass)] mass: Option<f64>,
+    #[pyo3(from_py_with = maybe::density)] density: Option<f64>,
     close: Option<&str>,
 ) -> PyResult<MassProperties> {
     let vertices: Vec<[f64; 3]> = Numbers::of("vertices", vertices)?.rows(None)?;

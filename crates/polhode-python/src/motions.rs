@@ -16,6 +16,7 @@ use crate::bodies::{Body, Start};
 use crate::calm::{Listener, aside};
 use crate::derivatives::{Asked, at_each, matrices, turn_axes};
 use crate::error::{of, refused};
+use crate::scalars::{number, scalar};
 use crate::states::States;
 use crate::through::{self, FittedMotion, Passage};
 
@@ -214,10 +215,10 @@ impl FreeMotion {
     #[pyo3(signature = (inertia, periods, mode, *, pole = None, phases = None, is_reversed = false, order = "wxyz"))]
     fn tumbling(
         inertia: &Bound<'_, PyAny>,
-        periods: HashMap<String, f64>,
+        periods: HashMap<String, Bound<'_, PyAny>>,
         mode: &str,
-        pole: Option<[f64; 2]>,
-        phases: Option<[f64; 2]>,
+        pole: Option<&Bound<'_, PyAny>>,
+        phases: Option<&Bound<'_, PyAny>>,
         is_reversed: bool,
         order: &str,
     ) -> PyResult<Self> {
@@ -227,8 +228,12 @@ impl FreeMotion {
             "sam" => flow::Mode::ShortAxis,
             _ => return Err(refused(format!("mode: '{mode}' is no mode; write \"lam\" or \"sam\""))),
         };
-        let period = |name: &str| periods.get(name).copied();
-        let elements = match (periods.len(), period("P_phi"), period("P_psi"), period("P_1")) {
+        let period = |name: &'static str| periods.get(name).map(|value| scalar(name, value)).transpose();
+        let pair = |name, value: Option<&Bound<'_, PyAny>>| {
+            Numbers::maybe(name, value)?.map(Numbers::fixed::<2>).transpose()
+        };
+        let (pole, phases) = (pair("pole", pole)?, pair("phases", phases)?);
+        let elements = match (periods.len(), period("P_phi")?, period("P_psi")?, period("P_1")?) {
             (2, Some(precession), Some(rotation), None) => {
                 Ok(TumblingElements::new(mode, [precession, rotation]))
             }
@@ -261,7 +266,7 @@ impl FreeMotion {
         inertia: &Bound<'_, PyAny>,
         t: &Bound<'_, PyAny>,
         attitude: &Bound<'_, PyAny>,
-        turns: f64,
+        #[pyo3(from_py_with = number::turns)] turns: f64,
         order: &str,
     ) -> PyResult<Vec<Passage>> {
         let (order, inertia) = (Order::of(order)?, through::free("inertia", inertia)?);
@@ -288,7 +293,7 @@ impl FreeMotion {
         inertia: &Bound<'_, PyAny>,
         t: &Bound<'_, PyAny>,
         attitude: &Bound<'_, PyAny>,
-        noise: f64,
+        #[pyo3(from_py_with = number::noise)] noise: f64,
         guess: &Bound<'_, FreeMotion>,
         order: &str,
     ) -> PyResult<FittedMotion> {
@@ -305,7 +310,7 @@ impl FreeMotion {
     }
 
     /// How often the body flips between the start and the time `t`, s.
-    fn flips(&self, t: f64) -> PyResult<u64> {
+    fn flips(&self, #[pyo3(from_py_with = number::t)] t: f64) -> PyResult<u64> {
         self.motion.at(t).map(|_| self.motion.flips(Dd::from(t))).map_err(of("t"))
     }
 

@@ -8,6 +8,7 @@ use crate::bodies::{Body, Start};
 use crate::calm::aside;
 use crate::error::refused;
 use crate::runs::named;
+use crate::scalars::number;
 use crate::units::finite;
 
 /// How fast the attitude error of a method grows: a shift in time along the polhode, and a twist about L.
@@ -47,13 +48,13 @@ impl PhaseDrift {
     /// >>> shift, twist, tilt = drift.departure(1e4)
     /// >>> abs(shift / (1e4 * drift.shift) - 1) < 0.01 and abs(tilt) < 0.01
     /// True
-    fn departure(&self, t: f64) -> PyResult<(f64, f64, f64)> {
+    fn departure(&self, #[pyo3(from_py_with = number::t)] t: f64) -> PyResult<(f64, f64, f64)> {
         let found = self.0.departure(finite("t", t)?);
         Ok((found.shift.hi(), found.twist.hi(), found.tilt.hi()))
     }
 
     /// The attitude error after the time t, s, without oscillations and rounding, rad.
-    fn attitude_error(&self, t: f64) -> PyResult<f64> {
+    fn attitude_error(&self, #[pyo3(from_py_with = number::t)] t: f64) -> PyResult<f64> {
         self.0.attitude_error(t).map_err(refused)
     }
 
@@ -64,7 +65,7 @@ impl PhaseDrift {
     }
 
     /// What rounding adds to the attitude after the time t, s, by order of magnitude, rad.
-    fn rounding(&self, t: f64) -> PyResult<f64> {
+    fn rounding(&self, #[pyo3(from_py_with = number::t)] t: f64) -> PyResult<f64> {
         Ok(self.0.rounding(finite("t", t)?))
     }
 
@@ -91,7 +92,7 @@ pub(crate) fn phase(
     body: &Bound<'_, PyAny>,
     omega: Option<&Bound<'_, PyAny>>,
     attitude: Option<&Bound<'_, PyAny>>,
-    step: f64,
+    #[pyo3(from_py_with = number::step)] step: f64,
     momentum: Option<&Bound<'_, PyAny>>,
     order: &str,
 ) -> PyResult<PhaseDrift> {

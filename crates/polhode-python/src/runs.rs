@@ -15,6 +15,7 @@ use crate::bodies::{Body, Start};
 use crate::calm::Listener;
 use crate::error::{of, refused};
 use crate::samples::{Row, Rows, Samples};
+use crate::scalars::{maybe, number};
 use crate::units::finite;
 
 /// Steps between two looks for Ctrl-C.
@@ -49,10 +50,10 @@ pub(crate) fn run(
     omega: Option<&Bound<'_, PyAny>>,
     attitude: Option<&Bound<'_, PyAny>>,
     times: &Bound<'_, PyAny>,
-    step: Option<f64>,
-    tolerance: Option<f64>,
+    #[pyo3(from_py_with = maybe::step)] step: Option<f64>,
+    #[pyo3(from_py_with = maybe::tolerance)] tolerance: Option<f64>,
     momentum: Option<&Bound<'_, PyAny>>,
-    start_time: f64,
+    #[pyo3(from_py_with = number::start_time)] start_time: f64,
     errors: bool,
     progress: Option<Py<PyAny>>,
     order: &str,

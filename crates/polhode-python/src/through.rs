@@ -11,6 +11,7 @@ use crate::calm::{Listener, aside};
 use crate::derivatives::at_each;
 use crate::error::{of, refused};
 use crate::motions::FreeMotion;
+use crate::scalars::number;
 use crate::states::States;
 
 /// One free motion through two attitudes.
@@ -116,7 +117,7 @@ impl Interpolation {
         inertia: &Bound<'_, PyAny>,
         t: &Bound<'_, PyAny>,
         attitude: &Bound<'_, PyAny>,
-        turns: f64,
+        #[pyo3(from_py_with = number::turns)] turns: f64,
         order: &str,
     ) -> PyResult<Self> {
         let (order, inertia) = (Order::of(order)?, free("inertia", inertia)?);

@@ -6,6 +6,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyString;
 
 use crate::error::refused;
+use crate::scalars::scalar;
 
 pub(crate) fn positive(name: &'static str, value: f64) -> PyResult<f64> {
     if value.is_finite() && value > 0.0 {
@@ -48,7 +49,7 @@ pub(crate) fn named_time(unit: &Bound<'_, PyAny>) -> PyResult<TimeUnit> {
             };
             TimeUnit::named(&text).ok_or_else(unknown)
         }
-        Err(_) => positive("time_unit", unit.extract()?).map(TimeUnit::Multiple),
+        Err(_) => positive("time_unit", scalar("time_unit", unit)?).map(TimeUnit::Multiple),
     }
 }
 
@@ -57,6 +58,6 @@ pub(crate) fn named_length(unit: &Bound<'_, PyAny>) -> PyResult<f64> {
         Ok(text) => {
             length_unit(&text.to_string_lossy()).map_err(|error| refused(format!("length_unit: {error}")))
         }
-        Err(_) => positive("length_unit", unit.extract()?),
+        Err(_) => positive("length_unit", scalar("length_unit", unit)?),
     }
 }

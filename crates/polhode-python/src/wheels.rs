@@ -10,6 +10,7 @@ use crate::arrays::{Numbers, Order, array};
 use crate::bodies::{Body, Start};
 use crate::error::{of, refused};
 use crate::motions::Motion;
+use crate::scalars::{maybe, number};
 use crate::states::States;
 use crate::units::finite;
 
@@ -43,7 +44,11 @@ fn rate(value: &Bound<'_, PyAny>) -> PyResult<Vector3<f64>> {
 #[pymethods]
 impl Wheel {
     #[new]
-    fn new(axis: &Bound<'_, PyAny>, inertia: f64, speed: f64) -> PyResult<Self> {
+    fn new(
+        axis: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = number::inertia)] inertia: f64,
+        #[pyo3(from_py_with = number::speed)] speed: f64,
+    ) -> PyResult<Self> {
         body::Wheel::new(vector("axis", axis)?, inertia, speed).map(Wheel).map_err(refused)
     }
 
@@ -55,13 +60,19 @@ impl Wheel {
     /// The same wheel with a motor that turns it by `torque`, N m, against the body from the time `begin` to `end`, s, or on without end; before and after
     /// it turns freely. It has its speed where the body turns at `omega`, rad/s, body axes, before the motor begins.
     #[pyo3(signature = (torque, omega, *, begin = 0.0, end = None))]
-    fn driven(&self, torque: f64, omega: &Bound<'_, PyAny>, begin: f64, end: Option<f64>) -> PyResult<Self> {
+    fn driven(
+        &self,
+        #[pyo3(from_py_with = number::torque)] torque: f64,
+        omega: &Bound<'_, PyAny>,
+        #[pyo3(from_py_with = number::begin)] begin: f64,
+        #[pyo3(from_py_with = maybe::end)] end: Option<f64>,
+    ) -> PyResult<Self> {
         let works = [begin, end.unwrap_or(f64::INFINITY)];
         self.0.driven(torque, works, rate(omega)?).map(Wheel).map_err(refused)
     }
 
     /// Its speed against the body at the time `t`, s, where the body turns at `omega`, rad/s, body axes.
-    fn speed(&self, t: f64, omega: &Bound<'_, PyAny>) -> PyResult<f64> {
+    fn speed(&self, #[pyo3(from_py_with = number::t)] t: f64, omega: &Bound<'_, PyAny>) -> PyResult<f64> {
         Ok(self.0.speed(finite("t", t)?, rate(omega)?))
     }
 

@@ -1,7 +1,9 @@
 """Examples of docstrings run, every public name has one, and the stubs are those of the running module."""
 
 import ast
+import decimal
 import doctest
+import fractions
 import inspect
 import pathlib
 import shutil
@@ -185,3 +187,102 @@ def test_a_checker_of_types_takes_the_stubs(tmp_path):
     program.write_text("import polhode\npolhode.FreeMotion([1, 2, 3]).at(0).attitudes\n")
     done = subprocess.run([checker, *arguments, str(program)], capture_output=True, text=True, cwd=tmp_path)
     assert done.returncode == 1 and "attitudes" in done.stdout, done.stdout
+
+
+def starts():
+    """The other arguments of each function and method of the stub that takes a number."""
+    moments, omega, t = [1, 2, 3], [0.4, 1, -0.3], numpy.arange(3.0)
+    motion = polhode.FreeMotion(moments, omega)
+    attitude = motion.at(t).attitude
+    rows, tensor = numpy.zeros((3, 3)), numpy.eye(3)
+    drift = polhode.phase("two-turn", moments, omega, step=0.1)
+    wheel = polhode.Wheel([0, 0, 1], 0.1, 1)
+    return {
+        "gravity_gradient": (polhode.gravity_gradient, dict(mean_motion=1)),
+        "gravity_gradient_on_conic": (polhode.gravity_gradient_on_conic, dict(gm=1, periapsis=1, eccentricity=0)),
+        "gravity_gradient_on_table": (polhode.gravity_gradient_on_table, dict(t=t, places=rows)),
+        "drag": (polhode.drag, dict(linear=1)),
+        "Wheel": (polhode.Wheel, dict(axis=[0, 0, 1], inertia=1, speed=1)),
+        "Wheel.driven": (wheel.driven, dict(torque=1, omega=omega)),
+        "Wheel.speed": (wheel.speed, dict(omega=omega)),
+        "FreeMotion.through": (motion.through, dict(inertia=moments, t=t[:2], attitude=attitude[:2])),
+        "FreeMotion.fitted": (motion.fitted, dict(inertia=moments, t=t, attitude=attitude, guess=motion)),
+        "FreeMotion.flips": (motion.flips, {}),
+        "Interpolation": (polhode.Interpolation, dict(inertia=moments, t=t, attitude=attitude)),
+        "run": (polhode.run, dict(method="rk4", body=moments, omega=omega, times=[0])),
+        "Ensemble.run": (polhode.Ensemble(moments, omega).run, dict(method="rk4", times=[0], step=1)),
+        "attitude": (polhode.attitude, dict(t=t, rates=rows, kind="rate")),
+        "audit": (polhode.audit, dict(t=t, attitude=attitude)),
+        "advise": (polhode.advise, dict(body=moments, omega=omega, until=1, attitude_error=0.1)),
+        "phase": (polhode.phase, dict(method="rk4", body=moments, omega=omega)),
+        "PhaseDrift.departure": (drift.departure, {}),
+        "PhaseDrift.attitude_error": (drift.attitude_error, {}),
+        "PhaseDrift.rounding": (drift.rounding, {}),
+        "fit": (polhode.fit, dict(t=t, rates=rows)),
+        "fit_carrier": (polhode.fit_carrier, dict(carrier=(t, rows))),
+        "MassProperties": (polhode.MassProperties, dict(center_of_mass=[0, 0, 0], tensor=tensor)),
+        "solid": (polhode.solid, dict(name="sphere", sizes=[1])),
+        "mesh": (polhode.mesh, dict(vertices=rows, triangles=rows)),
+        "diagnose": (polhode.diagnose, dict(tensor=tensor)),
+        "read": (polhode.read, dict(path={"t": t})),
+    }
+
+
+def numbers_of(node):
+    """The arguments of a function of the stub that are one number, and whether each may be left out as None."""
+    arguments = [one for one in node.args.args + node.args.kwonlyargs if one.annotation]
+    kinds = {one.arg: ast.unparse(one.annotation) for one in arguments}
+    return [(name, kind != "float") for name, kind in kinds.items() if kind in ("float", "float | None")]
+
+
+def test_numbers_that_are_none_are_refused_by_their_names():
+    known, seen = starts(), set()
+    functions = [(node.name, node) for node in stub().body if isinstance(node, ast.FunctionDef)]
+    for of_class in (node for node in stub().body if isinstance(node, ast.ClassDef)):
+        for member in (member for member in of_class.body if isinstance(member, ast.FunctionDef)):
+            functions.append((of_class.name if member.name == "__new__" else f"{of_class.name}.{member.name}", member))
+    for name, node in functions:
+        for argument, is_optional in numbers_of(node):
+            call, others = known[name]
+            seen.add(name)
+            for wrong, says in [
+                (2**53 + 1, "9007199254740993 is no double, and the nearest is 9007199254740992; "),
+                (numpy.int64(2**53 + 1), "9007199254740993 is no double"),
+                (10**400, "outside the range of a double"),
+                (True, "True; it must be a number"),
+                ("1", "'1'; it must be a number"),
+                (numpy.bool_(True), "an array of bool"),
+                ([1.0], r"an array of shape \(1,\); it must be of shape \(\)"),
+            ]:
+                with pytest.raises(polhode.PolhodeError, match=f"^{argument}: {says}"):
+                    call(**{**others, argument: wrong})
+            if not is_optional:
+                with pytest.raises(polhode.PolhodeError, match=f"^{argument}: None; it must be a number"):
+                    call(**{**others, argument: None})
+    assert seen == set(known)
+
+
+@pytest.mark.parametrize("wrong", [-1, 1.5, 2**17, True, 10**30, float("nan")])
+def test_threads_are_a_whole_number(wrong):
+    with pytest.raises(polhode.PolhodeError, match="^threads: "):
+        polhode.Ensemble([1, 2, 3], [0.4, 1, -0.3], threads=wrong)
+
+
+def test_numbers_of_any_kind_that_are_doubles_are_taken():
+    end = polhode.run("rk4", [1, 2, 3], [0.4, 1, -0.3], times=[2], step=0.5).attitude
+    for step in (numpy.float32(0.5), numpy.array(0.5), fractions.Fraction(1, 2), decimal.Decimal("0.5")):
+        assert (polhode.run("rk4", [1, 2, 3], [0.4, 1, -0.3], times=[2], step=step).attitude == end).all()
+    assert polhode.drag(numpy.int64(2**60)).name == "drag"
+    for wrong, says in [
+        (dict(pole=[1, 2, 3]), r"pole: an array of shape \(3,\); it must be of shape \(2,\)"),
+        (dict(phases=[True, False]), "phases: an array of bool"),
+        (dict(periods={"P_phi": "1h", "P_psi": 1e6}), "P_phi: '1h'; it must be a number"),
+    ]:
+        with pytest.raises(polhode.PolhodeError, match=f"^{says}"):
+            polhode.FreeMotion.tumbling(**{**dict(inertia=[0.61, 0.965, 1], periods={"P_phi": 1e5, "P_psi": 1e6}, mode="sam"), **wrong})
+    with pytest.raises(polhode.PolhodeError, match=r"^time_unit: an array of shape \(1,\)"):
+        polhode.read({"t": [0, 1]}, time_unit=[1.0])
+    with pytest.raises(polhode.PolhodeError, match="^t: None; it must be a number, or an array of numbers"):
+        polhode.FreeMotion([1, 2, 3], [0.4, 1, -0.3]).at(None)
+    with pytest.raises(polhode.PolhodeError, match="^start_time: NaN is no finite number"):
+        polhode.advise([1, 2, 3], [0.4, 1, -0.3], until=1, attitude_error=0.1, start_time=float("nan"))
