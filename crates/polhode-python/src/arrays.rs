@@ -118,6 +118,19 @@ fn as_floats<'py>(name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Bou
             && !error.is_instance_of::<PyMemoryError>(py);
         if is_ours { refused(format!("{name}: not an array of numbers: {}", error.value(py))) } else { error }
     };
+    // numpy strips units without a word: those of astropy and unyt, and of pint
+    for (of_quantities, unit) in [("to_value", "unit"), ("to_value", "units"), ("magnitude", "units")] {
+        let has = |name: &str| value.hasattr(name).map_err(not_numbers);
+        if has(of_quantities)? && has(unit)? {
+            let unit = value.getattr(unit).and_then(|unit| unit.str()).map_err(not_numbers)?;
+            let unit = unit.to_string_lossy();
+            if !unit.is_empty() && unit != "dimensionless" {
+                return Err(refused(format!(
+                    "{name}: a quantity in {unit}, and units of quantities are not read; give its numbers, in the unit that help() says"
+                )));
+            }
+        }
+    }
     // masked values have no number
     let value = match value.hasattr("filled").map_err(not_numbers)? {
         true => value.call_method1("filled", (f64::NAN,)).map_err(not_numbers)?,
@@ -198,8 +211,8 @@ fn no_double(name: &'static str, integer: impl std::fmt::Display, nearest: f64) 
 
 /// The texts of a list of integers, with all their digits; `None` of what else there is.
 pub(crate) fn integers(value: &Bound<'_, PyAny>) -> PyResult<Option<Vec<String>>> {
-    // masked values have no number
-    if value.hasattr("filled")? {
+    // masked values have no number, and those in units are refused where numbers are made of them
+    if value.hasattr("filled")? || value.hasattr("units")? {
         return Ok(None);
     }
     // what is no array is told where numbers are made of it

@@ -391,3 +391,41 @@ def test_counts_since_1970_keep_their_digits_in_a_table():
     for t in (counts, counts.astype("uint64"), counts.tolist()):
         record = polhode.read({"t": t, **rates}, kind="record", time_unit="ns")
         assert_allclose(record.t, np.arange(40) * 10_000_001e-9, rtol=1e-15)
+
+
+class Quantity(np.ndarray):
+    """An array with a unit as those of astropy."""
+
+    unit = "deg / s"
+
+    def to_value(self, unit):
+        raise NotImplementedError
+
+
+class Bare(Quantity):
+    unit = ""
+
+
+class Measured:
+    """A quantity as those of pint."""
+
+    units = "hour"
+    magnitude = np.arange(40)
+
+    def __array__(self, dtype=None, copy=None):
+        return self.magnitude
+
+
+def test_units_that_numpy_strips_are_refused():
+    degrees = np.array(OMEGA).view(Quantity)
+    with pytest.raises(PolhodeError, match="^omega: a quantity in deg / s, and units of quantities are not read; give its numbers"):
+        polhode.FreeMotion([1, 2, 3], degrees)
+    with pytest.raises(PolhodeError, match="^step: a quantity in deg / s"):
+        polhode.run("rk4", [1, 2, 3], OMEGA, times=[1], step=np.array(0.1).view(Quantity))
+    with pytest.raises(PolhodeError, match="t: a quantity in hour"):
+        polhode.FreeMotion([1, 2, 3], OMEGA).at(Measured())
+    rates = {f"w{axis} (rad/s)": np.sin(np.arange(40) + k) for k, axis in enumerate("xyz")}
+    with pytest.raises(PolhodeError, match="a quantity in hour"):
+        polhode.read({"t": Measured(), **rates}, kind="record")
+    bare = polhode.FreeMotion([1, 2, 3], np.array(OMEGA).view(Bare))
+    assert_array_equal(bare.at(T).attitude, polhode.FreeMotion([1, 2, 3], OMEGA).at(T).attitude)
