@@ -209,22 +209,6 @@ fn no_double(name: &'static str, integer: impl std::fmt::Display, nearest: f64) 
     ))
 }
 
-/// The texts of a list of integers, with all their digits; `None` of what else there is.
-pub(crate) fn integers(value: &Bound<'_, PyAny>) -> PyResult<Option<Vec<String>>> {
-    // masked values have no number, and those in units are refused where numbers are made of them
-    if value.hasattr("filled")? || value.hasattr("units")? {
-        return Ok(None);
-    }
-    // what is no array is told where numbers are made of it
-    let Ok(array) = value.py().import("numpy")?.call_method1("asarray", (value,)) else { return Ok(None) };
-    let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;
-    let dimensions: usize = array.getattr("ndim")?.extract()?;
-    if dimensions != 1 || !matches!(kind.as_str(), "i" | "u") {
-        return Ok(None);
-    }
-    array.call_method1("astype", ("str",))?.call_method0("tolist")?.extract().map(Some)
-}
-
 /// Where the scalar of a quaternion stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Order {

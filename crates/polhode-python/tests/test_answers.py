@@ -429,3 +429,40 @@ def test_units_that_numpy_strips_are_refused():
         polhode.read({"t": Measured(), **rates}, kind="record")
     bare = polhode.FreeMotion([1, 2, 3], np.array(OMEGA).view(Bare))
     assert_array_equal(bare.at(T).attitude, polhode.FreeMotion([1, 2, 3], OMEGA).at(T).attitude)
+
+
+def test_columns_that_are_counted_are_no_names():
+    rows = np.column_stack([T, np.sin(T), np.cos(T), np.sin(2 * T)])
+
+    class Frame:
+        """As a data frame of pandas that was made of an array."""
+
+        columns = range(4)
+
+        def to_csv(self, index=True):
+            return "\n".join([",".join(map(str, self.columns)), *(",".join(map(repr, row)) for row in rows.tolist())])
+
+    for given in (Frame(), dict(zip("0123", rows.T)), {"1.5": T, " -1e3": T}):
+        with pytest.raises(PolhodeError, match="path: the columns are called .*, which may be a row of numbers; give them names, as t, wx"):
+            polhode.read(given, kind="record")
+    Frame.columns = ["t", "wx", "wy", "wz"]
+    assert_array_equal(polhode.read(Frame(), kind="record").rates, rows[:, 1:])
+
+
+def test_columns_beside_those_that_are_read_may_hold_anything_that_a_file_has():
+    rates = {f"w{axis}": np.sin(np.arange(5) + k) for k, axis in enumerate("xyz")}
+    told = polhode.read({"t": np.arange(5) * 0.1, **rates}, kind="record")
+    beside = {"label": np.array(['a,b', 'say "c"', "#d", "e;f\n", ""]), "ok": np.arange(5) > 2, "from": np.array(["2026-01-01"] * 5, "M8[D]")}
+    found = polhode.read({**beside, "t": np.arange(5) * 0.1, **rates}, kind="record")
+    assert_array_equal(found.t, told.t)
+    assert_array_equal(found.rates, told.rates)
+    dates = np.datetime64("2026-01-01T00:00:00", "ns") + (np.arange(5) * 100_000_000).astype("m8[ns]")
+    assert_allclose(polhode.read({"t": dates, **rates}, kind="record").t, told.t, atol=1e-12)
+    for wrong, says in [
+        (np.arange(5) > 2, "True|False"),
+        (np.arange(5) * 1j, "wz: an array of complex128; it must hold real numbers"),
+        (np.zeros((5, 2)), r"wz: an array of shape \(5, 2\); it must be of shape \(n,\)"),
+        (np.zeros(5, "m8[s]"), "wz: an array of timedelta64"),
+    ]:
+        with pytest.raises(PolhodeError, match=says):
+            polhode.read({"t": np.arange(5) * 0.1, **rates, "wz": wrong}, kind="record")
