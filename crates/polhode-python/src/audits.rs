@@ -332,6 +332,12 @@ impl Given {
                 remark: remark.clone(),
             });
         }
+        let is_rotation = attitude.map(|attitude| attitude.hasattr("as_quat")).transpose()?;
+        if let (Some(form), None | Some(true)) = (form, is_rotation) {
+            return Err(refused(format!(
+                "form: '{form}'; it says what the numbers of an attitude are, and there are none; leave it out"
+            )));
+        }
         let mut claims = Convention::default();
         let mut rows = audit::Trajectory::new(Numbers::of("t", t)?.list()?);
         let n = Some(rows.times.len());

@@ -16,7 +16,7 @@ use crate::calm::aside;
 use crate::error::{of, refused, warn};
 use crate::estimates::Estimate;
 use crate::scalars::maybe;
-use crate::tables::Record;
+use crate::tables::{Record, Trajectory as Read};
 use crate::units::positive;
 
 /// The inertia tensor, up to its size, of a body that rotates freely: from measured angular velocities in sensor axes, or from attitudes.
@@ -86,6 +86,9 @@ pub(crate) fn fitted(
     let mut read_as = Vec::new();
     let measured = match attitude {
         None if attitude_noise.is_some() => return Err(refused("attitude_noise: given without attitude")),
+        None if order == Order::Last => {
+            return Err(refused("order: 'xyzw'; it is of attitudes, and none are given; leave it out"));
+        }
         None => {
             let (record, files) = recorded(t, rates, wheel, applied_torque)?;
             read_as = files;
@@ -181,6 +184,9 @@ impl Measured {
         rates: Option<&Bound<'_, PyAny>>,
         windows: Option<Vec<(f64, f64)>>,
     ) -> PyResult<Self> {
+        if t.is_instance_of::<Record>() || t.is_instance_of::<Read>() {
+            return Err(refused("t: times are wanted beside attitudes; give t of what was read"));
+        }
         let times = Numbers::of("t", t)?.list()?;
         let n = Some(times.len());
         let (rows, order) = quaternions("attitude", attitude, order)?;
@@ -269,10 +275,18 @@ pub(crate) fn recorded(
             _ => Err(refused("rates, wheel, applied_torque: the record has its own; leave them out")),
         };
     }
+    if t.is_instance_of::<Read>() {
+        return Err(refused(
+            "t: a Trajectory; read the file as kind=\"record\", or give t, omega and attitude of it",
+        ));
+    }
     if rates.is_none() {
         let records: Vec<Record> = t
             .extract()
             .map_err(|_| refused("rates: missing; give times and rates, a Record, or a list of records"))?;
+        if wheel.is_some() || torque.is_some() {
+            return Err(refused("wheel, applied_torque: the records have their own; leave them out"));
+        }
         if records.is_empty() {
             return Err(refused("t: a list without records"));
         }

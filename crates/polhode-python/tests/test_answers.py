@@ -113,6 +113,13 @@ def test_forces_are_part_of_the_question():
     assert not polhode.audit(T / 10, run.attitude, run.omega, moments=[1.25, 1.3, 0.75], advice=False).is_right
 
 
+class Turns:
+    """What of scipy's rotations is looked for."""
+
+    def as_quat(self):
+        return np.tile([0.0, 0, 0, 1], (len(T), 1))
+
+
 def test_what_cannot_be_audited_is_refused(exact):
     attitude, omega = exact
     for call, words in [
@@ -123,6 +130,8 @@ def test_what_cannot_be_audited_is_refused(exact):
         (lambda: polhode.audit(T, attitude, omega, moments=[1, 2, 3], body="phone"), "give one of them"),
         (lambda: polhode.audit(T, attitude, omega, tolerance=0), "tolerance"),
         (lambda: polhode.audit(T, attitude, omega, order="zyxw"), "order: 'zyxw'; it must be"),
+        (lambda: polhode.audit(T, None, omega, form="euler"), "form: 'euler'; it says what the numbers of an attitude are, and there are none"),
+        (lambda: polhode.audit(T, Turns(), omega, form="matrix"), "form: 'matrix'; it says what the numbers"),
     ]:
         with pytest.raises(PolhodeError, match=words):
             call()
@@ -192,10 +201,14 @@ def test_warnings_of_a_fit_are_python_warnings():
 
 def test_readings_that_count_twice_are_said_to_do_so():
     t, rates = simulated()
-    record = polhode.read({"t": t, **{f"w{axis}": rates[:, k] for k, axis in enumerate("xyz")}})
+    record = record_of(t, rates)
     with pytest.warns(PolhodeWarning, match="record 1 of the list: times and rates are those of records before it"):
         twice = polhode.fit([record, record])
     assert twice.segments == 2 and (twice.sigma_ratios < polhode.fit(record).sigma_ratios).all()
+
+
+def record_of(t, rates):
+    return polhode.read({"t": t, **{f"w{axis}": rates[:, k] for k, axis in enumerate("xyz")}}, kind="record")
 
 
 def test_what_a_record_does_not_tell_is_refused():
@@ -206,6 +219,12 @@ def test_what_a_record_does_not_tell_is_refused():
         (lambda: polhode.fit(t, 0 * spin), "."),
         (lambda: polhode.fit(t[:3], spin), r"rates: an array of shape \(4000, 3\); it must be of shape \(3, 3\)"),
         (lambda: polhode.fit(t), "rates: missing"),
+        # what would be of no use
+        (lambda: polhode.fit(*simulated(), order="xyzw"), "order: 'xyzw'; it is of attitudes, and none are given"),
+        (lambda: polhode.fit([record_of(*simulated())], wheel=spin), "wheel, applied_torque: the records have their own; leave them out"),
+        (lambda: polhode.fit([record_of(*simulated())], applied_torque=spin), "wheel, applied_torque: the records have their own"),
+        (lambda: polhode.fit(record_of(*simulated()), attitude=spin), "t: times are wanted beside attitudes"),
+        (lambda: polhode.fit(polhode.read(PROGRAMS / "mujoco-euler.csv")), 't: a Trajectory; read the file as kind="record"'),
         (lambda: polhode.fit(*simulated(), torque="wind"), "torque: 'wind'; it must be"),
         (lambda: polhode.fit(*simulated(), gyro_bias=-1), "gyro_bias: -1.0; it must be"),
     ]:
