@@ -1,6 +1,7 @@
 //! Which method, with which step.
 
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Instant;
 
 use polhode::advise::{Advice as Found, Choice, Demand, Progress, Setting, advise_telling, check_telling};
 use polhode::method::method;
@@ -10,7 +11,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::Order;
 use crate::bodies::{Body, Start};
-use crate::calm::aside;
+use crate::calm::{self, LISTEN, aside};
 use crate::error::{of, refused, warn};
 use crate::scalars::{maybe, number};
 use crate::units::finite;
@@ -142,13 +143,15 @@ impl Advice {
     }
 }
 
-/// The quickest method that moves `body` from the start up to the time `until`, s, with an attitude error of at most `attitude_error`,
-/// rad, and its step or tolerance: found by running the methods on the body itself.
+/// The quickest method that moves `body` from the start for `until` seconds, with an attitude error of at most `attitude_error`, rad, and
+/// its step or tolerance: found by running the methods on the body itself.
 ///
-/// The start is that of `FreeMotion`. `energy_error`: largest relative error of the energy; `budget`: largest processor time, s;
+/// The start is that of `FreeMotion`, at the time `start_time`, s, for forces that depend on time. `energy_error`: largest relative error
+/// of the energy; `budget`: largest processor time, s;
 /// `exclude`: names of methods that are not wanted; `check`: whether the advice is run to the end and its attitude compared with
 /// the motion, with a warning where that is more than was asked for; the energy error stays the predicted one.
-/// `progress` is called as `progress(stage, done, seconds)`: what is done, which part of it, and about how long all of it takes.
+/// `progress` is called as `progress(stage, done, seconds)`, some times a second and at the end of a stage: what is done, which part of it,
+/// and about how long all of it takes.
 ///
 /// >>> import polhode
 /// >>> advice = polhode.advise("toutatis", until=30 * 86400, attitude_error=1e-6, exclude=["exact"])
@@ -172,7 +175,7 @@ pub(crate) fn advise(
     exclude: Option<Vec<String>>,
     #[pyo3(from_py_with = number::start_time)] start_time: f64,
     check: bool,
-    progress: Option<Py<PyAny>>,
+    #[pyo3(from_py_with = calm::progress)] progress: Option<Py<PyAny>>,
     order: &str,
 ) -> PyResult<Advice> {
     let body = Body::of("body", body)?;
@@ -190,8 +193,13 @@ pub(crate) fn advise(
     let keeper = Arc::clone(&raised);
     let moved = body.body.clone();
     let found = aside(py, move |_| {
+        let mut told: Option<Instant> = None;
         let heed = &mut |now: &Progress| {
             let Some(tell) = &progress else { return };
+            if now.done < 1.0 && told.is_some_and(|told| told.elapsed() < LISTEN) {
+                return;
+            }
+            told = Some(Instant::now());
             let mut raised = keeper.lock().unwrap_or_else(PoisonError::into_inner);
             if raised.is_none() {
                 let told =

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use crate::error::refused;
 
 /// How often Ctrl-C is looked for.
-const LISTEN: Duration = Duration::from_millis(50);
+pub(crate) const LISTEN: Duration = Duration::from_millis(50);
 
 /// What `work` returns, done on a thread of its own while this one listens for Ctrl-C. Work that is given up is told so by its flag, or
 /// ends by itself.
@@ -22,7 +22,7 @@ pub(crate) fn aside<T: Send + 'static>(
     aside_telling(py, work, || Ok(()))
 }
 
-/// The same; `tell` is called now and then, and what it raises ends the work too.
+/// The same; `tell` is called now and then, and at the end, and what it raises ends the work too.
 pub(crate) fn aside_telling<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
@@ -39,7 +39,7 @@ pub(crate) fn aside_telling<T: Send + 'static>(
         let (found, again) = py.detach(move || (receiver.recv_timeout(LISTEN), receiver));
         receiver = again;
         match found {
-            Ok(found) => return Ok(found),
+            Ok(found) => return tell().map(|()| found),
             Err(RecvTimeoutError::Timeout) => {
                 let heard = py.check_signals().and_then(|()| tell());
                 heard.inspect_err(|_| stop.store(true, Ordering::Relaxed))?;
@@ -49,6 +49,21 @@ pub(crate) fn aside_telling<T: Send + 'static>(
             }
         }
     }
+}
+
+/// The argument `name`, which is called as `form`.
+pub(crate) fn called(name: &str, form: &str, value: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
+    if value.is_callable() {
+        Ok(value.clone().unbind())
+    } else {
+        Err(refused(format!("{name}: {}; it must be a function, which is called as {form}", value.repr()?)))
+    }
+}
+
+/// What is told how far long work is, for `pyo3`.
+pub(crate) fn progress(value: &Bound<'_, PyAny>) -> PyResult<Option<Py<PyAny>>> {
+    let form = "progress(stage, done, seconds)";
+    (!value.is_none()).then(|| called("progress", form, value)).transpose()
 }
 
 /// Looks for Ctrl-C from time to time, in work that does not hold the interpreter, and tells how far that has come.
@@ -66,6 +81,12 @@ impl Listener {
     /// One that calls `progress`, if there is one, as `progress(stage, done, seconds)`.
     pub(crate) fn telling(stage: &str, progress: Option<Py<PyAny>>) -> Self {
         Listener { progress: progress.map(|progress| (stage.into(), progress)), ..Listener::new() }
+    }
+
+    /// Tells that all is done.
+    pub(crate) fn end(&self) -> PyResult<()> {
+        let Some((stage, progress)) = &self.progress else { return Ok(()) };
+        Python::attach(|py| progress.call1(py, (stage, 1.0, py.None())).map(drop))
     }
 
     /// `done`: the part of the work that is done.

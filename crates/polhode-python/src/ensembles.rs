@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, Order, quaternions, room};
 use crate::bodies::Body;
-use crate::calm::aside_telling;
+use crate::calm::{self, aside_telling};
 use crate::error::{of, refused};
 use crate::runs::named;
 use crate::scalars::{number, threads};
@@ -136,18 +136,18 @@ impl Ensemble {
     }
 
     /// The exact motion of every member at `times`, s, of either sign: attitudes (times, members, 4), angular velocities (times,
-    /// members, 3). `progress` is called as `progress(stage, done, seconds)` some times a second.
+    /// members, 3). `progress` is called as `progress(stage, done, seconds)` some times a second, and at the end.
     #[pyo3(signature = (times, *, progress = None))]
     fn at(
         &self,
         py: Python<'_>,
         times: &Bound<'_, PyAny>,
-        progress: Option<&Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = calm::progress)] progress: Option<Py<PyAny>>,
     ) -> PyResult<States> {
         let times = Numbers::of("times", times)?.list()?;
         let mut rows = Collected::new(times.len(), self.members.len())?;
         let (members, order, instants) = (Arc::clone(&self.members), self.order, times.clone());
-        let tell = rows.told(progress);
+        let tell = rows.told(progress.as_ref().map(|progress| progress.bind(py)));
         let work = move |stop: &AtomicBool| {
             let found = members.at(&instants, |part: &Rows| rows.take(part, order, stop));
             found.map(|()| rows)
@@ -165,7 +165,7 @@ impl Ensemble {
         times: &Bound<'_, PyAny>,
         #[pyo3(from_py_with = number::step)] step: f64,
         #[pyo3(from_py_with = number::start_time)] start_time: f64,
-        progress: Option<&Bound<'_, PyAny>>,
+        #[pyo3(from_py_with = calm::progress)] progress: Option<Py<PyAny>>,
     ) -> PyResult<States> {
         let times = Numbers::of("times", times)?.list()?;
         let method = named(method, None)?;
@@ -177,7 +177,7 @@ impl Ensemble {
         }
         let mut rows = Collected::new(times.len(), self.members.len())?;
         let (members, order) = (Arc::clone(&self.members), self.order);
-        let tell = rows.told(progress);
+        let tell = rows.told(progress.as_ref().map(|progress| progress.bind(py)));
         let work = move |stop: &AtomicBool| {
             let each = |part: &Rows| rows.take(part, order, stop);
             let found = members.advance(method.as_ref(), clock, &steps, each);

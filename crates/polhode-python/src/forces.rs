@@ -7,6 +7,7 @@ use polhode::body::{self, Orbit};
 use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, array};
+use crate::calm::called;
 use crate::error::{of, refused};
 use crate::scalars::number;
 
@@ -165,6 +166,10 @@ pub(crate) fn drag(
     body::Force::drag(linear, quadratic).map(Force::from).map_err(refused)
 }
 
+fn function(value: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
+    called("torque", "torque(t, attitude, omega)", value)
+}
+
 /// A torque, N m, body axes, by a function `torque(t, attitude, omega)` of the time, s, the attitude w, x, y, z, body to space, and
 /// the angular velocity, rad/s, body axes. Equal arguments must give equal values.
 ///
@@ -177,7 +182,7 @@ pub(crate) fn drag(
 /// >>> bool(run.energy[1] < run.energy[0])
 /// True
 #[pyfunction]
-pub(crate) fn force(name: String, torque: Py<PyAny>) -> Force {
+pub(crate) fn force(name: String, #[pyo3(from_py_with = function)] torque: Py<PyAny>) -> Force {
     let raised = Raised::default();
     let keeper = raised.clone();
     let law = move |t: f64, q: UnitQuaternion<f64>, omega: Vector3<f64>| {

@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, Order};
 use crate::bodies::{Body, Start};
-use crate::calm::Listener;
+use crate::calm::{self, Listener};
 use crate::error::{of, refused};
 use crate::samples::{Row, Rows, Samples};
 use crate::scalars::{maybe, number};
@@ -29,7 +29,7 @@ const MOST_STEPS: f64 = 1e12;
 /// `method` is a name of the catalogue, as `rk4`, `dmv:10` or `kick-drift@srkn-6b`, or `exact`, the closed form. `step`, s, is that of
 /// the method; methods that choose their steps take a `tolerance` and need no step. The start is that of `FreeMotion`. Without
 /// `errors` no step is watched and no exact motion worked out, which is the quicker. `progress` is called as
-/// `progress(stage, done, seconds)` some times a second.
+/// `progress(stage, done, seconds)` some times a second, and at the end.
 ///
 /// >>> import polhode
 /// >>> run = polhode.run("rk4", [1, 2, 3], [0.4, 1, -0.3], times=[0, 500, 1000], step=0.1)
@@ -55,7 +55,7 @@ pub(crate) fn run(
     momentum: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = number::start_time)] start_time: f64,
     errors: bool,
-    progress: Option<Py<PyAny>>,
+    #[pyo3(from_py_with = calm::progress)] progress: Option<Py<PyAny>>,
     order: &str,
 ) -> PyResult<Samples> {
     let order = Order::of(order)?;
@@ -140,6 +140,7 @@ impl Asked<'_> {
                 },
             );
         }
+        listener.end()?;
         Ok(rows)
     }
 
@@ -202,6 +203,7 @@ impl Asked<'_> {
                 return Err(refused(format!("method: {name}: {why}")));
             }
         }
+        listener.end()?;
         Ok(rows)
     }
 }

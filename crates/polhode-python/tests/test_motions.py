@@ -107,8 +107,24 @@ def test_long_runs_tell_how_far_they_are():
     told = []
     run("rk4", [1, 2, 3], OMEGA, times=[0, 2e5], step=0.05, progress=lambda *now: told.append(now))
     assert told and all(stage == "rk4" and 0 <= done <= 1 for stage, done, _ in told)
+    assert told[-1] == ("rk4", 1, None) and told == sorted(told, key=lambda one: one[1])
     with pytest.raises(ZeroDivisionError):
         run("rk4", [1, 2, 3], OMEGA, times=[0, 1e9], step=0.05, progress=lambda *now: 1 / 0)
+
+
+def test_what_cannot_be_called_is_refused():
+    says = r"^progress: 'bar'; it must be a function, which is called as progress\(stage, done, seconds\)"
+    members = Ensemble([1, 2, 3], OMEGA)
+    for call in (
+        lambda: run("rk4", [1, 2, 3], OMEGA, times=[0, 1], step=0.1, progress="bar"),
+        lambda: polhode.advise([1, 2, 3], OMEGA, until=1, attitude_error=0.1, progress="bar"),
+        lambda: members.at([0], progress="bar"),
+        lambda: members.run("rk4", times=[0], step=0.1, progress="bar"),
+    ):
+        with pytest.raises(PolhodeError, match=says):
+            call()
+    with pytest.raises(PolhodeError, match=r"^torque: 5; it must be a function, which is called as torque\(t, attitude, omega\)"):
+        polhode.force("own", 5)
 
 
 def test_forces_add_and_stop():
@@ -359,6 +375,7 @@ def test_an_ensemble_tells_its_progress_and_ends_where_that_raises():
     many = Ensemble([1, 2, 3], np.tile(OMEGA, (3000, 1)), threads=1)
     many.run("rk4", times=np.arange(1, 20), step=0.01, progress=lambda *done: told.append(done))
     assert told and all(stage == "ensemble" and 0 <= done <= 1 for stage, done, _ in told)
+    assert told[-1] == ("ensemble", 1, None)
     assert told == sorted(told, key=lambda one: one[1])
 
     def enough(stage, done, seconds):
