@@ -16,7 +16,19 @@ create_exception!(
 
 /// The exception with the words of `error`.
 pub(crate) fn refused(error: impl std::fmt::Display) -> PyErr {
-    PolhodeError::new_err(error.to_string())
+    PolhodeError::new_err(keywords(&error.to_string()))
+}
+
+/// Words of the command with its flags as the keywords that they are here.
+fn keywords(text: &str) -> String {
+    let keyword = |word: &str| match word.strip_prefix("--") {
+        Some(flag) if flag.starts_with(|c: char| c.is_ascii_lowercase()) => {
+            let end = flag.find(|c: char| !c.is_ascii_lowercase() && c != '-').unwrap_or(flag.len());
+            flag[..end].replace('-', "_") + &flag[end..]
+        }
+        _ => word.into(),
+    };
+    text.split(' ').map(keyword).collect::<Vec<_>>().join(" ")
 }
 
 /// What went wrong with the argument `name`, with the words of an error.
@@ -26,6 +38,6 @@ pub(crate) fn of<E: std::fmt::Display>(name: &'static str) -> impl Fn(E) -> PyEr
 
 /// A Python warning, which filters of the caller may turn into an exception.
 pub(crate) fn warn(py: Python<'_>, text: &str) -> PyResult<()> {
-    let text = CString::new(text.replace('\0', "\u{fffd}")).unwrap_or_default();
+    let text = CString::new(keywords(text).replace('\0', "\u{fffd}")).unwrap_or_default();
     PyErr::warn(py, &py.get_type::<PolhodeWarning>(), &text, 1)
 }

@@ -7,6 +7,7 @@ use polhode::inertia;
 use polhode_files::error::hearing;
 use polhode_files::examined::Examined;
 use polhode_files::given::Given;
+use polhode_files::instant::{self, Epoch};
 use polhode_files::mesh::MeshOptions;
 use polhode_files::robots::{self, Language};
 use polhode_files::times::{Asked, Source, TimesColumn};
@@ -16,7 +17,7 @@ use pyo3::prelude::*;
 use crate::arrays::array;
 use crate::calm::aside;
 use crate::columns;
-use crate::error::{refused, warn};
+use crate::error::{of, refused, warn};
 use crate::links::{Link, Links};
 use crate::masses::{MassProperties, amount, closing};
 use crate::scalars::maybe;
@@ -83,7 +84,7 @@ impl Kind {
 /// | `.stl`, `.obj`, `.ply`: a mesh, with `mass` or `density` | `MassProperties` |
 /// | a table (CSV, npy, LAMMPS dump, messages of ROS, ...) with attitudes or angular momenta, `kind="trajectory"` | `Trajectory`, or a dict of them by the name of the body |
 /// | a table of angular velocities, `kind="record"` | `Record` |
-/// | `kind="times"` | array of times, s |
+/// | `kind="times"` | array of times, s; dates are counted from the date `epoch` |
 ///
 /// Of tables: `columns` names columns as `"t=clock,wx=gx,wy=gy,wz=gz"`; `time_unit` (`s`, `ms`, `us`, `ns`, or seconds) and `rate_unit`
 /// (`rad/s`, `deg/s`, `rpm`) hold where the header names none; `sample_rate`, Hz, where a column counts samples. Of records: `axes` as
@@ -100,7 +101,7 @@ impl Kind {
 #[pyfunction]
 #[pyo3(signature = (path, *, kind = None, columns = None, time_unit = None, rate_unit = None, sample_rate = None, axes = None,
                     skip_rows = None, mass = None, density = None, length_unit = None, close = None, shell = None, weld = None,
-                    group = None, root = None))]
+                    group = None, root = None, epoch = None))]
 #[allow(clippy::too_many_arguments, reason = "they are keywords")]
 pub(crate) fn read<'py>(
     py: Python<'py>,
@@ -120,6 +121,7 @@ pub(crate) fn read<'py>(
     #[pyo3(from_py_with = maybe::weld)] weld: Option<f64>,
     group: Option<String>,
     root: Option<PathBuf>,
+    epoch: Option<&str>,
 ) -> PyResult<Bound<'py, PyAny>> {
     let (rows, kind) = match columns::text(path)? {
         Some(text) => (Rows::Text(text), Kind::of(kind, Path::new(""))?),
@@ -157,6 +159,11 @@ pub(crate) fn read<'py>(
     if root.is_some() && !matches!(kind, Kind::Model(_)) {
         return Err(refused("root: it is the folder of the includes of a model; leave it out"));
     }
+    if epoch.is_some() && kind != Kind::Times {
+        return Err(refused("epoch: it is the date of t = 0 of times; leave it out, or give kind=\"times\""));
+    }
+    let epoch = epoch.map(|text| instant::date(text).map(|date| Epoch::new(date, None))).transpose();
+    let epoch = epoch.map_err(of("epoch"))?;
     let is_table = matches!(kind, Kind::Trajectory | Kind::Record | Kind::Table);
     let about_tables = [
         columns.is_some() && kind != Kind::Times,
@@ -225,7 +232,7 @@ pub(crate) fn read<'py>(
             let source = TimesColumn {
                 source: Source::File(path),
                 wanted: columns.map(String::from),
-                epoch: None,
+                epoch,
                 asked: Asked { file: "path".into(), column: "columns" },
             };
             let found = heard(py, move || source.read()?.collect::<Result<Vec<f64>, Error>>())?;

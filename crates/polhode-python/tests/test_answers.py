@@ -341,6 +341,8 @@ def test_every_kind_of_file_is_read(tmp_path):
     assert_allclose(solid.center_of_mass, [0.25, 0.25, 0.25])
     (tmp_path / "times.txt").write_text("0\n1.5\n3\n")
     assert polhode.read(tmp_path / "times.txt", kind="times").tolist() == [0, 1.5, 3]
+    (tmp_path / "dates.txt").write_text("2026-01-01T00:00:00Z\n2026-01-01T00:00:10Z\n")
+    assert polhode.read(tmp_path / "dates.txt", kind="times", epoch="2025-12-31T23:59:50Z").tolist() == [10, 20]
     (tmp_path / "dates.csv").write_text("time,wx,wy,wz\n2026-01-01T00:00:00Z,0.4,1,-0.3\n2026-01-01T00:00:01Z,0.41,0.99,-0.28\n")
     for call, words in [
         (lambda: polhode.read(tmp_path / "missing.csv"), "missing.csv"),
@@ -357,6 +359,12 @@ def test_every_kind_of_file_is_read(tmp_path):
         (lambda: polhode.read(PROGRAMS / "numpy.npy", columns=columns, axes="x,-y,z"), "they are for records"),
         (lambda: polhode.read({"t": [0, 1], **{f"q_{axis}": [0.5, 0.5] for axis in "wxyz"}}, rate_unit="rpm"), "rate_unit: 'rpm'"),
         (lambda: polhode.read(tmp_path / "dates.csv", time_unit="ms"), "dates.csv are dates already"),
+        (lambda: polhode.read(tmp_path / "dates.csv", epoch="2026-01-01"), "epoch: it is the date of t = 0 of times"),
+        (lambda: polhode.read(tmp_path / "dates.txt", kind="times", epoch="soon"), "^epoch: "),
+        # flags of the command are keywords here
+        (lambda: polhode.read(tmp_path / "dates.txt", kind="times"), "give the date of t = 0 by epoch"),
+        (lambda: polhode.read(tmp_path / "log.csv", sample_rate=100), "drop sample_rate, or name the counter by columns t=NAME"),
+        (lambda: polhode.read({"x": [1, 2]}, kind="record"), r"say which they are: columns t=NAME,wx=NAME,... \(keys in help\)"),
     ]:
         with pytest.raises(PolhodeError, match=words):
             call()

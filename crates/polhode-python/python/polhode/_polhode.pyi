@@ -804,4 +804,5 @@ def read(
     weld: float | None = None,
     group: str | None = None,
     root: Path | None = None,
+    epoch: str | None = None,
 ) -> Any: ...
