@@ -131,10 +131,15 @@ fn as_floats<'py>(name: &'static str, value: &Bound<'py, PyAny>) -> PyResult<Bou
             }
         }
     }
-    // masked values have no number
-    let value = match value.hasattr("filled").map_err(not_numbers)? {
-        true => value.call_method1("filled", (f64::NAN,)).map_err(not_numbers)?,
-        false => value.clone(),
+    // masked values have no number, and an array of integers no place for that
+    let value = if value.hasattr("filled").map_err(not_numbers)? {
+        let is_masked = value.getattr("mask").and_then(|mask| mask.call_method0("any")?.is_truthy());
+        match is_masked.map_err(not_numbers)? {
+            true => value.call_method1("filled", (f64::NAN,)).map_err(not_numbers)?,
+            false => value.call_method0("filled").map_err(not_numbers)?,
+        }
+    } else {
+        value.clone()
     };
     let array = asarray.call1((value,)).map_err(not_numbers)?;
     let kind: String = array.getattr("dtype")?.getattr("kind")?.extract()?;

@@ -79,6 +79,9 @@ pub(crate) fn run(
 /// The method of that name, at a tolerance where one is given.
 pub(crate) fn named(name: &str, tolerance: Option<f64>) -> PyResult<Box<dyn AnyMethod>> {
     let found = method(name).map_err(|error| match error {
+        UnknownMethod::Name { name } if name == "exact" => refused(
+            "method: 'exact': the closed form takes no steps; it is that of Ensemble.at and of FreeMotion",
+        ),
         UnknownMethod::Name { name } => {
             let known: Vec<String> = catalogue().iter().map(|method| method.name()).collect();
             refused(Error::unknown_name("method", "method", &name, known.iter().map(String::as_str)))

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use polhode::body;
 use polhode::flow;
 use polhode::num::Dd;
+use polhode_files::text::short;
 use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, Order, array};
@@ -87,6 +88,16 @@ impl Wheel {
     fn inertia(&self) -> f64 {
         self.0.inertia()
     }
+
+    fn __repr__(&self) -> String {
+        let [x, y, z] = [0, 1, 2].map(|k| short(self.0.axis()[k]));
+        let how = match self.0.motor() {
+            _ if self.0.is_held() => format!("held at {} rad/s", short(self.0.speed(0.0, Vector3::zeros()))),
+            Some((torque, _)) => format!("driven by {} N m", short(torque)),
+            None => "free".into(),
+        };
+        format!("Wheel(axis {x}, {y}, {z}, inertia {} kg m^2, {how})", short(self.0.inertia()))
+    }
 }
 
 /// The motion of a body with wheels that are held or free from one start: its exact attitude and angular velocity at any time.
@@ -162,7 +173,7 @@ impl GyrostatMotion {
     }
 
     fn __repr__(&self) -> String {
-        let period = self.period().map_or("none".into(), polhode_files::text::short);
+        let period = self.period().map_or("none".into(), short);
         format!("GyrostatMotion(period {period} s)")
     }
 }
@@ -210,7 +221,7 @@ impl SteadySpin {
     }
 
     fn __repr__(&self) -> String {
-        let rate = polhode_files::text::short(self.0.rate);
+        let rate = short(self.0.rate);
         format!("SteadySpin({}, {rate} rad/s about L)", self.0.stability.name())
     }
 }

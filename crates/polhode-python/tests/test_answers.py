@@ -407,6 +407,12 @@ def test_integers_that_are_doubles_are_numbers():
     for moments in (beyond, beyond.astype("uint64"), beyond.astype(object), np.array([1, 2, 2.5], dtype=object), np.arange(2, 5, dtype="int8")):
         given = polhode.FreeMotion(moments, OMEGA).at(T).attitude
         assert_array_equal(given, polhode.FreeMotion(np.asarray(moments, dtype=float), OMEGA).at(T).attitude)
+    # masked arrays, of which nothing is masked
+    whole = np.ma.masked_array([1, 2, 3])
+    assert_array_equal(polhode.FreeMotion(whole, OMEGA).at(T).attitude, polhode.FreeMotion([1, 2, 3], OMEGA).at(T).attitude)
+    whole[1] = np.ma.masked
+    with pytest.raises(PolhodeError, match="inertia: not an array of numbers"):
+        polhode.FreeMotion(whole, OMEGA)
     at = polhode.FreeMotion([1, 2, 3], OMEGA).at
     for text in ("1.5", b"1.5", True):
         with pytest.raises(PolhodeError, match=f"t: not an array of numbers: it holds a {type(text).__name__}"):

@@ -370,6 +370,13 @@ def test_motions_through_attitudes_and_fitted_to_them_are_the_motion():
         FreeMotion.through([1, 2, 3], t[:2], attitude[:3])
 
 
+def test_the_closed_form_is_no_method_of_steps():
+    with pytest.raises(PolhodeError, match="method: 'exact': the closed form takes no steps; it is that of Ensemble.at"):
+        Ensemble([1, 2, 3], OMEGA).run("exact", times=[0, 1], step=0.1)
+    with pytest.raises(PolhodeError, match="method: 'exact': the closed form takes no steps"):
+        polhode.phase("exact", [1, 2, 3], OMEGA, step=0.1)
+
+
 def test_an_ensemble_tells_its_progress_and_ends_where_that_raises():
     told = []
     many = Ensemble([1, 2, 3], np.tile(OMEGA, (3000, 1)), threads=1)
@@ -436,5 +443,7 @@ def test_a_body_with_wheels_moves_as_its_equations_say():
     ]:
         with pytest.raises(polhode.PolhodeError, match=words):
             call()
+    assert repr(held) == "Wheel(axis 0, 0.6, 0.8, inertia 0.05 kg m^2, held at 60 rad/s)"
+    assert repr(held.free(omega)).endswith(", free)") and repr(held.driven(0.1, omega)).endswith(", driven by 0.1 N m)")
     with pytest.raises(polhode.PolhodeError, match="works with"):
         polhode.GyrostatMotion(polhode.Body(tensor, wheels=[held.driven(0.1, omega)]), omega)
