@@ -137,6 +137,8 @@ def test_stubs_are_those_of_the_running_module():
         elif isinstance(node, ast.ClassDef):
             seen.add(node.name)
             found = getattr(polhode, node.name)
+            # of the classes only the exception and the warning have heirs
+            assert [getattr(d, "id", "") for d in node.decorator_list] == ([] if issubclass(found, Exception) else ["final"]), node.name
             members = [member for member in node.body if isinstance(member, ast.FunctionDef)]
             told = {member.name for member in members if not member.name.startswith("_")}
             if node.name == "Verdict":

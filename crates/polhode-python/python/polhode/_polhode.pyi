@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, Literal, TypeAlias
+from typing import Any, Literal, TypeAlias, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -24,6 +24,7 @@ BodyLike: TypeAlias = Any
 class PolhodeError(ValueError): ...
 class PolhodeWarning(UserWarning): ...
 
+@final
 class Force:
     @property
     def name(self) -> str: ...
@@ -40,6 +41,7 @@ def torque_space(torque: ArrayLike) -> Force: ...
 def drag(linear: float, quadratic: float = 0.0) -> Force: ...
 def force(name: str, torque: Callable[[float, Floats, Floats], ArrayLike]) -> Force: ...
 
+@final
 class Wheel:
     def __new__(cls, axis: ArrayLike, inertia: float, speed: float) -> Wheel: ...
     def free(self, omega: ArrayLike) -> Wheel: ...
@@ -50,6 +52,7 @@ class Wheel:
     @property
     def inertia(self) -> float: ...
 
+@final
 class Body:
     def __new__(
         cls, inertia: BodyLike, forces: Sequence[Force] | None = None, *, wheels: Sequence[Wheel] | None = None
@@ -76,6 +79,7 @@ class Body:
 def body(name: str) -> Body: ...
 def bodies() -> list[str]: ...
 
+@final
 class States:
     @property
     def t(self) -> Any: ...
@@ -90,6 +94,7 @@ class States:
     def __iter__(self) -> Iterator[Floats]: ...
     def __len__(self) -> int: ...
 
+@final
 class FreeMotion:
     def __new__(
         cls,
@@ -136,6 +141,7 @@ class FreeMotion:
     def flips(self, t: float) -> int: ...
     def character(self) -> dict[str, float | str | None]: ...
 
+@final
 class Passage:
     @property
     def motion(self) -> FreeMotion: ...
@@ -148,6 +154,7 @@ class Passage:
     @property
     def complete(self) -> bool: ...
 
+@final
 class FittedMotion:
     @property
     def motion(self) -> FreeMotion: ...
@@ -156,6 +163,7 @@ class FittedMotion:
     @property
     def chi2_per_dof(self) -> float: ...
 
+@final
 class Interpolation:
     def __new__(
         cls, inertia: BodyLike, t: ArrayLike, attitude: Turn, *, turns: float = 1.0, order: Order = "wxyz"
@@ -167,6 +175,7 @@ class Interpolation:
     @property
     def largest_jump(self) -> float: ...
 
+@final
 class SteadySpin:
     @property
     def omega(self) -> Floats: ...
@@ -181,6 +190,7 @@ class SteadySpin:
     @property
     def energy(self) -> float: ...
 
+@final
 class GyrostatMotion:
     def __new__(
         cls,
@@ -203,6 +213,7 @@ class GyrostatMotion:
     @property
     def steady_spins(self) -> list[SteadySpin]: ...
 
+@final
 class LagrangeTop:
     def __new__(
         cls,
@@ -231,6 +242,7 @@ class LagrangeTop:
     @property
     def precession_per_nutation(self) -> float | None: ...
 
+@final
 class Samples:
     @property
     def method(self) -> str: ...
@@ -280,6 +292,7 @@ def run(
 ) -> Samples: ...
 def methods() -> list[str]: ...
 
+@final
 class Ensemble:
     def __new__(
         cls,
@@ -299,6 +312,7 @@ class Ensemble:
     ) -> States: ...
     def __len__(self) -> int: ...
 
+@final
 class Attitudes:
     @property
     def t(self) -> Floats: ...
@@ -336,6 +350,7 @@ def attitude(
     order: Order = "wxyz",
 ) -> Attitudes: ...
 
+@final
 class Verdict:
     @property
     def is_right(self) -> bool: ...
@@ -412,6 +427,7 @@ def audit(
     advice: bool = True,
 ) -> Verdict: ...
 
+@final
 class Advice:
     @property
     def method(self) -> str: ...
@@ -454,6 +470,7 @@ def advise(
     order: Order = "wxyz",
 ) -> Advice: ...
 
+@final
 class PhaseDrift:
     @property
     def shift(self) -> float: ...
@@ -478,6 +495,7 @@ def phase(
     order: Order = "wxyz",
 ) -> PhaseDrift: ...
 
+@final
 class Estimate:
     @property
     def shape(self) -> Floats: ...
@@ -621,6 +639,7 @@ def fit(
     trust_units: bool = False,
 ) -> Estimate: ...
 
+@final
 class MeasuredBody:
     @property
     def tensor(self) -> Floats: ...
@@ -633,6 +652,7 @@ class MeasuredBody:
     @property
     def axes(self) -> Floats: ...
 
+@final
 class CarrierEstimate:
     @property
     def carrier(self) -> MeasuredBody: ...
@@ -683,6 +703,7 @@ def fit_carrier(
     trust_units: bool = False,
 ) -> CarrierEstimate: ...
 
+@final
 class MassProperties:
     def __new__(
         cls, mass: float, center_of_mass: ArrayLike, tensor: ArrayLike, *, about: ArrayLike | None = None
@@ -704,7 +725,7 @@ class MassProperties:
     def triangle_margins(self) -> Floats: ...
     def moved(self, by: ArrayLike) -> MassProperties: ...
     def turned(self, by: Turn, *, order: Order = "wxyz") -> MassProperties: ...
-    def __add__(self, other: MassProperties) -> MassProperties: ...
+    def __add__(self, other: MassProperties, /) -> MassProperties: ...
 
 def solid(
     name: str, sizes: ArrayLike, *, mass: float | None = None, density: float | None = None
@@ -718,6 +739,7 @@ def mesh(
     close: Literal["fan", "hull"] | None = None,
 ) -> MassProperties: ...
 
+@final
 class Link:
     @property
     def name(self) -> str: ...
@@ -750,13 +772,15 @@ def diagnose(
     extents: ArrayLike | None = None,
 ) -> Link: ...
 
+@final
 class Links:
     def keys(self) -> list[str]: ...
     def __len__(self) -> int: ...
     def __iter__(self) -> Iterator[Link]: ...
-    def __contains__(self, key: str) -> bool: ...
-    def __getitem__(self, key: str | int) -> Link: ...
+    def __contains__(self, key: str, /) -> bool: ...
+    def __getitem__(self, key: str | int, /) -> Link: ...
 
+@final
 class Trajectory:
     @property
     def id(self) -> str | None: ...
@@ -772,6 +796,7 @@ class Trajectory:
     def comments(self) -> list[str]: ...
     def __len__(self) -> int: ...
 
+@final
 class Record:
     @property
     def segments(self) -> int: ...
