@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, Order, quaternions, room};
 use crate::bodies::Body;
-use crate::calm::{self, aside_telling};
+use crate::calm::{self, Listener, aside_telling};
 use crate::error::{of, refused};
 use crate::runs::named;
 use crate::scalars::{number, threads};
@@ -44,6 +44,7 @@ impl Ensemble {
                         order = "wxyz"))]
     #[allow(clippy::too_many_arguments, reason = "they are keywords")]
     fn new(
+        py: Python<'_>,
         body: Option<&Bound<'_, PyAny>>,
         omega: Option<&Bound<'_, PyAny>>,
         attitude: Option<&Bound<'_, PyAny>>,
@@ -69,10 +70,15 @@ impl Ensemble {
                 let &[_, 3, 3] = numbers.shape.as_slice() else {
                     return Err(numbers.unexpected("(n, 3, 3)"));
                 };
-                let rows = numbers.values.as_chunks::<9>().0.iter().map(|row| Matrix3::from_row_slice(row));
-                rows.enumerate()
-                    .map(|(k, row)| Inertia::from_tensor(row).map_err(member("tensors", k)))
-                    .collect::<PyResult<_>>()?
+                py.detach(|| {
+                    let mut listener = Listener::new();
+                    let rows = numbers.values.as_chunks::<9>().0.iter().enumerate();
+                    rows.map(|(k, row)| {
+                        listener.listen(0.0)?;
+                        Inertia::from_tensor(Matrix3::from_row_slice(row)).map_err(member("tensors", k))
+                    })
+                    .collect::<PyResult<Vec<_>>>()
+                })?
             }
             _ => return Err(refused("body, moments, tensors: give one of them")),
         };

@@ -276,6 +276,7 @@ def test_threads_share_a_motion():
     lambda: FreeMotion([1, 2, 3], OMEGA).at(np.arange(3e6)),
     lambda: polhode.Interpolation([1, 2, 3], [0, 1, 2], FreeMotion([1, 2, 3], OMEGA).at([0, 1, 2]).attitude, turns=0.5).beside_slerp(np.full(500_000, 0.5)),
     lambda: run("rk4", [1, 2, 3], OMEGA, times=[0, 1e6], step=0.1),
+    lambda: Ensemble(tensors=np.tile([[2, 0.1, 0.2], [0.1, 2.2, 0.05], [0.2, 0.05, 2.4]], (50000, 1, 1)), omega=OMEGA),
     lambda: Ensemble([1, 2, 3], np.tile(OMEGA, (20000, 1)), threads=1).run("rk4", times=[0, 300], step=0.1),
     lambda: [polhode.audit(np.arange(3e3), *FreeMotion([1, 2, 3], OMEGA).at(np.arange(3e3)), moments=[1, 2, 3]) for _ in range(20)],
 ])  # fmt: skip
