@@ -1,12 +1,14 @@
 //! Inertia: solids and meshes.
 
 use nalgebra::Vector3;
-use polhode::inertia::{self, Amount, Closing, FLOAT_WELD, Solid, Surface};
+use polhode::inertia::{self, Amount, Closing, FLOAT_WELD, MeshError, Solid, Surface};
+use polhode_files::mesh::findings;
 use polhode_files::text::short;
 use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, Order, array, matrix, rotation};
-use crate::error::{of, refused};
+use crate::calm::aside;
+use crate::error::{of, refused, warn};
 use crate::scalars::{maybe, number};
 
 /// Mass, kg, centre of mass, m, and inertia tensor about it, kg m^2, in the axes of one frame. Points, rods and plates have them too.
@@ -162,7 +164,8 @@ pub(crate) fn closing(name: Option<&str>) -> PyResult<Option<Closing>> {
 }
 
 /// What a mesh of triangles encloses: vertices of shape (n, 3), m, and the indices of corners of shape (m, 3), counterclockwise as
-/// seen from outside. Files are read by `read`.
+/// seen from outside; what is mended, as triangles that are turned over, is said by a warning. An open mesh is refused, unless `close` says
+/// how its holes are closed, by a `fan` each or by the convex `hull` of all. Files are read by `read`.
 ///
 /// >>> from polhode import mesh
 /// >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
@@ -190,13 +193,17 @@ pub(crate) fn mesh(
         .into_iter()
         .map(|[a, b, c]| Ok([vertex(a)?, vertex(b)?, vertex(c)?]))
         .collect::<PyResult<_>>()?;
-    let found = triangles.py().detach(move || {
+    let py = triangles.py();
+    let found = aside(py, move |_| {
         let surface = Surface::new(all)?;
-        match close {
+        let (mesh, repairs) = match close {
             Some(how) => surface.closed(FLOAT_WELD, how),
             None => surface.mended(FLOAT_WELD),
-        }
-    });
-    let (mesh, _) = found.map_err(refused)?;
+        }?;
+        let said = findings(&surface, &mesh, &repairs);
+        Ok::<_, MeshError>((mesh, said))
+    })?;
+    let (mesh, said) = found.map_err(refused)?;
+    said.iter().try_for_each(|said| warn(py, &format!("triangles: {said}")))?;
     mesh.with(amount).map(MassProperties).map_err(refused)
 }

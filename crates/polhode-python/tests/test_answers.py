@@ -266,6 +266,23 @@ def test_solids_add_up():
         polhode.solid("boxx", [1, 2, 3], mass=1)
 
 
+def test_what_is_mended_of_a_mesh_is_said():
+    corners, faces = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        whole = polhode.mesh(corners, faces, mass=1)
+    inwards = [face[::-1] for face in faces]
+    for triangles, close in [(inwards, None), (faces[:3], "fan"), (faces + faces[:1], None), (faces + [[0, 0, 1]], None)]:
+        with pytest.warns(PolhodeWarning, match="^triangles: "):
+            mended = polhode.mesh(corners, triangles, mass=1, close=close)
+        assert_allclose(mended.tensor, whole.tensor, rtol=1e-14)
+    both = np.concatenate([corners, np.add(corners, [0.1, 0, 0])])
+    with pytest.warns(PolhodeWarning, match="^triangles: parts overlap, and .* % of the volume counts twice"):
+        polhode.mesh(both, np.concatenate([faces, np.add(faces, 4)]), mass=1)
+    with pytest.raises(PolhodeError, match="the mesh is open"):
+        polhode.mesh(corners, faces[:3], mass=1)
+
+
 def test_a_tensor_is_examined():
     valid = polhode.diagnose(np.diag([1.0, 2, 2.5]))
     assert valid.verdict == "valid" and valid.trouble is None

@@ -141,23 +141,8 @@ impl MeshOptions {
         };
         let (mesh, repairs) =
             found.map_err(|error| Error::Input(refusal(path, surface, &error, self.closing)))?;
-        if !repairs.is_empty() {
-            let list: Vec<String> = repairs.iter().map(Repair::to_string).collect();
-            warn(&format!("{}: mended: {}", path.display(), list.join("; ")));
-        }
-        match surface.degenerate() {
-            0 => {}
-            1 => warn(&format!("{}: 1 facet without area left out", path.display())),
-            many => warn(&format!("{}: {many} facets without area left out", path.display())),
-        }
-        if mesh.doubled() > OVERLAP {
-            warn(&format!(
-                "{}: parts overlap, and {} % of the volume counts twice; make them one solid, or give each a mass of its own in a file \
-                 of parts",
-                path.display(),
-                rounded(two_digits(100.0 * mesh.doubled()))
-            ));
-        }
+        let said = findings(surface, &mesh, &repairs);
+        said.iter().for_each(|said| warn(&format!("{}: {said}", path.display())));
         Ok(mesh)
     }
 
@@ -173,6 +158,28 @@ impl MeshOptions {
             ));
         }
     }
+}
+
+/// What is to be said of a mesh beside its numbers: what was mended and left out, and how much of it counts twice.
+#[must_use]
+pub fn findings(surface: &Surface, mesh: &Mesh, repairs: &[Repair]) -> Vec<String> {
+    let mut found = Vec::new();
+    if !repairs.is_empty() {
+        let list: Vec<String> = repairs.iter().map(Repair::to_string).collect();
+        found.push(format!("mended: {}", list.join("; ")));
+    }
+    match surface.degenerate() {
+        0 => {}
+        1 => found.push("1 facet without area left out".into()),
+        many => found.push(format!("{many} facets without area left out")),
+    }
+    if mesh.doubled() > OVERLAP {
+        found.push(format!(
+            "parts overlap, and {} % of the volume counts twice; make them one solid, or give each a mass of its own in a file of parts",
+            rounded(two_digits(100.0 * mesh.doubled()))
+        ));
+    }
+    found
 }
 
 fn two_digits(x: f64) -> f64 {

@@ -15,7 +15,7 @@ use polhode::inertia::Surface;
 use crate::error::Error;
 use crate::inputs;
 use crate::text::visible;
-pub use body::{MeshOptions, length_unit};
+pub use body::{MeshOptions, findings, length_unit};
 pub use error::MeshFileError;
 pub use obj::read as obj;
 pub use ply::read as ply;
