@@ -3,10 +3,10 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use polhode::body::{Clock, State, WheelError};
 use polhode::inertia::Inertia;
-use polhode::rotation::Vec3;
+use polhode::rotation::{Quat, Vec3};
 use polhode::run::{self, EnsembleError, Rows};
 use pyo3::prelude::*;
 
@@ -14,7 +14,7 @@ use crate::arrays::{Numbers, Order, quaternions, room};
 use crate::bodies::Body;
 use crate::calm::{self, Listener, aside_telling};
 use crate::error::{of, refused};
-use crate::runs::named;
+use crate::runs::{named, warn_coarse};
 use crate::scalars::{number, threads};
 use crate::states::States;
 
@@ -35,6 +35,8 @@ pub(crate) struct Ensemble {
     members: Arc<run::Ensemble>,
     body: Option<Body>,
     order: Order,
+    /// Of the first member, rad/s.
+    speed: f64,
 }
 
 #[pymethods]
@@ -115,6 +117,11 @@ impl Ensemble {
         }
         let of_wheels: Vec3<f64> =
             body.as_ref().map_or(Vec3::zero(), |body| body.body.momentum_of_wheels_at(0.0).into());
+        let first = State { attitude: Quat::identity(), momentum_body: Vec3(rotations[0]) - of_wheels };
+        let speed = match is_omega {
+            true => Vector3::from(rotations[0]).norm(),
+            false => polhode::Body::free(inertias[0].clone()).omega_body(&first).norm(),
+        };
         let mut members = run::Ensemble::with_capacity(n).threads(threads);
         for k in 0..n {
             let inertia = &inertias[k % inertias.len()];
@@ -138,7 +145,7 @@ impl Ensemble {
                 Ok::<_, WheelError>(forces.iter().fold(carrier, |body, force| body.with(force.clone())))
             });
         }
-        Ok(Ensemble { members: Arc::new(members), body, order })
+        Ok(Ensemble { members: Arc::new(members), body, order, speed })
     }
 
     /// The exact motion of every member at `times`, s, of either sign: attitudes (times, members, 4), angular velocities (times,
@@ -175,6 +182,9 @@ impl Ensemble {
     ) -> PyResult<States> {
         let times = Numbers::of("times", times)?.list()?;
         let method = named(method, None)?;
+        if method.tolerance().is_none() {
+            warn_coarse(py, step, self.speed)?;
+        }
         let clock = Clock { start: start_time, step };
         let schedule = run::Schedule::at_times(clock, &times).map_err(of("times"))?;
         let steps: Vec<u64> = schedule.into_iter().collect();

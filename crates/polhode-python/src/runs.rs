@@ -8,12 +8,13 @@ use polhode::observe::Monitor;
 use polhode::rotation::rotation_angle;
 use polhode::run::{Run, Watch};
 use polhode_files::Error;
+use polhode_files::text::short;
 use pyo3::prelude::*;
 
 use crate::arrays::{Numbers, Order};
 use crate::bodies::{Body, Start};
 use crate::calm::{self, Listener};
-use crate::error::{of, refused};
+use crate::error::{of, refused, warn};
 use crate::samples::{Row, Rows, Samples};
 use crate::scalars::{maybe, number};
 use crate::units::finite;
@@ -27,9 +28,9 @@ const MOST_STEPS: f64 = 1e12;
 /// The run of `body` by a method, sampled at `times`, s, ascending from `start_time` on.
 ///
 /// `method` is a name of the catalogue, as `rk4`, `dmv:10` or `kick-drift@srkn-6b`, or `exact`, the closed form. `step`, s, is that of
-/// the method; methods that choose their steps take a `tolerance` and need no step. The start is that of `FreeMotion`. Without
-/// `errors` no step is watched and no exact motion worked out, which is the quicker. `progress` is called as
-/// `progress(stage, done, seconds)` some times a second, and at the end.
+/// the method, with a warning where the body turns by more than 1 rad in it; methods that choose their steps take a `tolerance` and need
+/// no step. The start is that of `FreeMotion`. Without `errors` no step is watched and no exact motion worked out, which is the quicker.
+/// `progress` is called as `progress(stage, done, seconds)` some times a second, and at the end.
 ///
 /// >>> import polhode
 /// >>> run = polhode.run("rk4", [1, 2, 3], [0.4, 1, -0.3], times=[0, 500, 1000], step=0.1)
@@ -71,9 +72,27 @@ pub(crate) fn run(
         py.detach(|| asked.exact(Listener::telling(method, progress)))
     } else {
         let found = named(method, tolerance)?;
+        if let (Some(step), None) = (step, found.tolerance()) {
+            warn_coarse(py, step, asked.body.body.omega_of(&asked.start).norm())?;
+        }
         py.detach(|| asked.stepped(found.as_ref(), step, Listener::telling(method, progress)))
     };
     Ok(Samples { method: method.into(), rows: body.settle(rows)?, order })
+}
+
+/// Warns of a step, s, in which a body of this speed, rad/s, turns too far for any method.
+pub(crate) fn warn_coarse(py: Python<'_>, step: f64, speed: f64) -> PyResult<()> {
+    let turn = step * speed;
+    if !turn.is_finite() || turn <= 1.0 {
+        return Ok(());
+    }
+    warn(
+        py,
+        &format!(
+            "step: {}: turns the body by {turn:.1} rad per step; above 1 rad no stepping method is accurate; take a smaller step",
+            short(step)
+        ),
+    )
 }
 
 /// The method of that name, at a tolerance where one is given.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use polhode::audit::{self, Attitudes, Convention};
 use polhode::record;
-use polhode_files::{Error, ReadAs, ReadOptions, trajectory};
+use polhode_files::{Error, NamedBy, ReadAs, ReadOptions, trajectory};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -179,9 +179,19 @@ impl Record {
     }
 }
 
-/// Refuses a unit of times that have theirs.
-fn check_times(options: &ReadOptions, read_as: &ReadAs) -> PyResult<()> {
-    let (times, _) = &read_as.times;
+/// Refuses a unit of times that have theirs, and says where it is guessed from large numbers.
+fn check_times(py: Python<'_>, options: &ReadOptions, read_as: &ReadAs) -> PyResult<()> {
+    let (times, by) = &read_as.times;
+    if *by == NamedBy::Values && times.ends_with("since 1970") {
+        warn(
+            py,
+            &format!(
+                "{}: the times are taken as {times}; if they count from another time, as from the start of the device, give their unit as \
+                 time_unit",
+                read_as.file
+            ),
+        )?;
+    }
     let is_set = options.time_unit.is_some() || options.sample_rate.is_some();
     if is_set && (times == "dates" || times == "s and ns") {
         return Err(refused(format!(
@@ -199,7 +209,7 @@ pub(crate) fn record_of<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let (own, asked) = (Arc::clone(rows), options.clone());
     let found = heard(py, move || own.record(&asked))?;
-    check_times(options, &found.read_as)?;
+    check_times(py, options, &found.read_as)?;
     if let Some(first) = found.skipped.first() {
         let (count, samples) = (found.skipped.len(), found.record.samples());
         warn(py, &format!("rows left out: {count}, beside {samples} that are read; the first: {first}"))?;
@@ -214,7 +224,7 @@ pub(crate) fn trajectories<'py>(
     options: &ReadOptions,
     found: trajectory::FoundTrajectory,
 ) -> PyResult<Bound<'py, PyAny>> {
-    check_times(options, &found.read_as)?;
+    check_times(py, options, &found.read_as)?;
     if options.axes.is_some() || options.most_skipped.is_some() {
         return Err(refused(
             "axes, skip_rows: they are for records, and this is a trajectory; leave them out, or give kind=\"record\"",

@@ -9,10 +9,13 @@ use crate::arrays::{Numbers, Order, array, quaternions, room, unit};
 use crate::bodies::Body;
 use crate::calm::{Listener, aside};
 use crate::derivatives::at_each;
-use crate::error::{of, refused};
+use crate::error::{of, refused, warn};
 use crate::motions::FreeMotion;
 use crate::scalars::number;
 use crate::states::States;
+
+/// Jumps of the angular velocity up to this share of it are those of rounding.
+const SMOOTH: f64 = 1e-6;
 
 /// One free motion through two attitudes.
 #[pyclass(frozen, module = "polhode")]
@@ -93,7 +96,8 @@ impl FittedMotion {
 
 /// The exact free motions between the attitudes of a table, the smoothest of all that turn at most `turns` times between neighbours.
 ///
-/// `inertia` is what `FreeMotion` takes; `t` ascends, s; `attitude` (n, 4), or a scipy rotation.
+/// `inertia` is what `FreeMotion` takes; `t` ascends, s; `attitude` (n, 4), or a scipy rotation. A warning says where they are not those of
+/// one motion.
 ///
 /// >>> import numpy, polhode
 /// >>> t = numpy.arange(20.0)
@@ -123,8 +127,19 @@ impl Interpolation {
         let (order, inertia) = (Order::of(order)?, free("inertia", inertia)?);
         let table = table(t, attitude, order)?;
         let body = inertia.clone();
-        let found = aside(t.py(), move |_| flow::Interpolation::new(&body, &table, turns))?;
-        Ok(Interpolation { found: found.map_err(refused)?, inertia, order })
+        let found =
+            aside(t.py(), move |_| flow::Interpolation::new(&body, &table, turns))?.map_err(refused)?;
+        let fastest = found.pieces().iter().map(|piece| piece.omega_body.norm()).fold(0.0, f64::max);
+        if found.largest_jump() > SMOOTH * fastest {
+            warn(
+                t.py(),
+                &format!(
+                    "these are not attitudes of one free motion: the angular velocity jumps by up to {:.1e} rad/s at them",
+                    found.largest_jump()
+                ),
+            )?;
+        }
+        Ok(Interpolation { found, inertia, order })
     }
 
     /// Attitudes and angular velocities at the time `t`, s, between the first and the last of the table: an array of any shape.

@@ -518,3 +518,13 @@ def test_columns_beside_those_that_are_read_may_hold_anything_that_a_file_has():
     ]:
         with pytest.raises(PolhodeError, match=says):
             polhode.read({"t": np.arange(5) * 0.1, **rates, "wz": wrong}, kind="record")
+
+
+def test_a_unit_of_times_that_is_guessed_is_said():
+    rates = {f"w{axis} (rad/s)": np.sin(np.arange(40) + k) for k, axis in enumerate("xyz")}
+    table = {"t": COUNT + np.arange(40) * 10_000_000, **rates}
+    with pytest.warns(PolhodeWarning, match="the times are taken as ns since 1970; if they count from another time, .* give their unit as time_unit"):
+        polhode.read(table, kind="record")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        polhode.read(table, kind="record", time_unit="ns")

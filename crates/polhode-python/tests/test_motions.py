@@ -127,6 +127,22 @@ def test_what_cannot_be_called_is_refused():
         polhode.force("own", 5)
 
 
+def test_a_step_that_turns_too_far_is_warned_of():
+    says = r"^step: 1: turns the body by 1.1 rad per step; above 1 rad no stepping method is accurate; take a smaller step$"
+    for call in (
+        lambda: run("rk4", [1, 2, 3], OMEGA, times=[1], step=1),
+        lambda: Ensemble([1, 2, 3], OMEGA).run("rk4", times=[1], step=1),
+        lambda: Ensemble([1, 2, 3], momentum=np.multiply([1, 2, 3], OMEGA)).run("rk4", times=[1], step=1),
+    ):
+        with pytest.warns(PolhodeWarning, match=says):
+            call()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        run("rk4", [1, 2, 3], OMEGA, times=[1], step=0.5)
+        run("dop853", [1, 2, 3], OMEGA, times=[1], step=1, tolerance=1e-9)
+        Ensemble([1, 2, 3], OMEGA).run("rk4", times=[1], step=0.5)
+
+
 def test_forces_add_and_stop():
     gravity, brake = polhode.gravity([0, 0, 2]), polhode.drag(0.1)
     body = Body([1, 1, 0.25], [gravity, brake])
@@ -361,6 +377,12 @@ def test_motions_through_attitudes_and_fitted_to_them_are_the_motion():
     assert last.beside_slerp(between).shape == (2, 2) and last.beside_slerp(7.5) > 1e-3 and last.span == (0, 19)
     with pytest.raises(PolhodeError, match="t: 20"):
         last.at(20)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        polhode.Interpolation([1, 2, 3], t, attitude, turns=0.5)
+    # those of another body
+    with pytest.warns(PolhodeWarning, match="these are not attitudes of one free motion: the angular velocity jumps by up to .* rad/s at them"):
+        polhode.Interpolation([1, 2, 2.5], t, attitude, turns=0.5)
     guess = FreeMotion([1, 2, 3], [0.41, 1, -0.3], [0.5, 0.1, -0.3, 0.9])
     fitted = FreeMotion.fitted([1, 2, 3], t, attitude, noise=1e-3, guess=guess)
     assert_allclose(fitted.motion.at(0).omega, OMEGA, atol=1e-11)
