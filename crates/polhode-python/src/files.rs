@@ -12,6 +12,7 @@ use polhode_files::mesh::MeshOptions;
 use polhode_files::robots::{self, Language};
 use polhode_files::times::{Asked, Source, TimesColumn};
 use polhode_files::{ColumnNames, Error, ReadOptions, SignedAxes, bodies, given, trajectory, twins};
+use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use crate::arrays::array;
@@ -126,7 +127,13 @@ pub(crate) fn read<'py>(
     let (rows, kind) = match columns::text(path)? {
         Some(text) => (Rows::Text(text), Kind::of(kind, Path::new(""))?),
         None => {
-            let path: PathBuf = path.extract()?;
+            let kind_of = path.get_type().name()?;
+            let path: PathBuf = path.extract().map_err(|error: PyErr| match error.is_instance_of::<PyTypeError>(py) {
+                true => refused(format!(
+                    "path: a {kind_of}; it must be a path, a data frame, a structured array or a dict of columns"
+                )),
+                false => error,
+            })?;
             // a file of that name, not standard input
             let path = if path.as_os_str() == "-" { PathBuf::from("./-") } else { path };
             let kind = Kind::of(kind, &path)?;

@@ -243,7 +243,14 @@ impl FreeMotion {
             (2, None, Some(rotation), Some(combined)) => {
                 TumblingElements::from_combined_and_rotation(mode, [combined, rotation])
             }
-            _ => return Err(refused("periods: needed are two of P_phi, P_psi and P_1, s")),
+            _ => {
+                let mut given: Vec<&str> = periods.keys().map(String::as_str).collect();
+                given.sort_unstable();
+                return Err(refused(format!(
+                    "periods: '{}'; needed are two of P_phi, P_psi and P_1, s",
+                    given.join(", ")
+                )));
+            }
         };
         let elements = elements.map_err(of("periods"))?.with_reversed(is_reversed);
         let elements = pole.map_or(elements, |pole| elements.with_pole(pole));

@@ -339,6 +339,9 @@ def test_tables_in_memory_are_read_by_their_names(exact):
         polhode.read({"t": [1, 2, 3], "wx": [1, 2]})
     with pytest.raises(PolhodeError, match="a trajectory or a record"):
         polhode.read(table, kind="mesh")
+    for wrong, kind in [(None, "NoneType"), ([1, 2], "list"), (np.zeros((4, 4)), "ndarray"), (b"record.csv", "bytes")]:
+        with pytest.raises(PolhodeError, match=f"^path: a {kind}; it must be a path, a data frame, a structured array or a dict of columns"):
+            polhode.read(wrong)
 
 
 def test_every_kind_of_file_is_read(tmp_path):

@@ -279,6 +279,7 @@ def test_numbers_of_any_kind_that_are_doubles_are_taken():
         (dict(pole=[1, 2, 3]), r"pole: an array of shape \(3,\); it must be of shape \(2,\)"),
         (dict(phases=[True, False]), "phases: an array of bool"),
         (dict(periods={"P_phi": "1h", "P_psi": 1e6}), "P_phi: '1h'; it must be a number"),
+        (dict(periods={"P_phi": 1e5, "P_Psi": 1e6}), "periods: 'P_Psi, P_phi'; needed are two of P_phi, P_psi and P_1"),
     ]:
         with pytest.raises(polhode.PolhodeError, match=f"^{says}"):
             polhode.FreeMotion.tumbling(**{**dict(inertia=[0.61, 0.965, 1], periods={"P_phi": 1e5, "P_psi": 1e6}, mode="sam"), **wrong})
