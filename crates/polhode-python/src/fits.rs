@@ -5,7 +5,7 @@ use polhode::audit::{Attitudes, Direction, QuaternionOrder, Reading, Trajectory}
 use polhode::record::{self, Segment};
 use polhode_files::ReadAs;
 use polhode_fit::{
-    self as fits, FitError, Flight, Flights, Known, Poses, Prior, SensorPriors, Settings, TorqueModel,
+    self as fits, FitError, Flight, Flights, Known, Limit, Poses, Prior, SensorPriors, Settings, TorqueModel,
     during, flights,
 };
 use pyo3::prelude::*;
@@ -24,8 +24,9 @@ use crate::units::positive;
 /// `t`: times, s, and `rates` (n, 3), rad/s; or in place of `t` a `Record` of `read`, or a list of records of one body. Without `windows`,
 /// pairs of times, the flights of a record that is not free as a whole are found. `wheel` (n, 3), N m s, and `applied_torque` (n, 3),
 /// N m: angular momentum of wheels and torque at the times, which give the tensor its size, as does one of `trace`, kg m^2,
-/// `momentum`, kg m^2/s, and `twice_energy`, kg m^2/s^2. `torque`: what acts besides: `none`, `drag`, `drag3`, `quadratic`,
-/// `constant`, or `auto`, the simplest that the record does not contradict. `noise`, rad/s, and
+/// `momentum`, kg m^2/s, `twice_energy`, kg m^2/s^2, and `moment`, an axis x, y, z and the moment about it, kg m^2. `at_least` and `at_most`
+/// (n, 4): axes and the shares of the trace between which the moments about them are known to be. `torque`: what acts besides: `none`,
+/// `drag`, `drag3`, `quadratic`, `constant`, or `auto`, the simplest that the record does not contradict. `noise`, rad/s, and
 /// `radius`, s, are found where they are not given. `gyro_bias`, rad/s, `gyro_scale`, `gyro_axis_scales`, `gyro_misalignment`, rad,
 /// `gyro_skew`, s: standard deviations of errors of the sensor, estimated with these priors; `quantum`,
 /// rad/s, step of the readings. `prior`: a tensor that is known beforehand, or its moments, with `prior_sigma`, the relative standard
@@ -48,8 +49,8 @@ use crate::units::positive;
 /// True
 #[pyfunction(name = "fit")]
 #[pyo3(signature = (t, rates = None, *, attitude = None, attitude_noise = None, order = "wxyz", windows = None, wheel = None, applied_torque = None, torque = "auto",
-                    radius = None, noise = None, trace = None, momentum = None, twice_energy = None, gyro_bias = None,
-                    gyro_scale = None, gyro_axis_scales = None, gyro_misalignment = None, gyro_skew = None,
+                    radius = None, noise = None, trace = None, momentum = None, twice_energy = None, moment = None, at_least = None,
+                    at_most = None, gyro_bias = None, gyro_scale = None, gyro_axis_scales = None, gyro_misalignment = None, gyro_skew = None,
                     quantum = None, prior = None, prior_sigma = None, prior_shape = false, trust_units = false))]
 #[allow(clippy::too_many_arguments, reason = "they are keywords")]
 pub(crate) fn fitted(
@@ -68,6 +69,9 @@ pub(crate) fn fitted(
     #[pyo3(from_py_with = maybe::trace)] trace: Option<f64>,
     #[pyo3(from_py_with = maybe::momentum)] momentum: Option<f64>,
     #[pyo3(from_py_with = maybe::twice_energy)] twice_energy: Option<f64>,
+    moment: Option<&Bound<'_, PyAny>>,
+    at_least: Option<&Bound<'_, PyAny>>,
+    at_most: Option<&Bound<'_, PyAny>>,
     #[pyo3(from_py_with = maybe::gyro_bias)] gyro_bias: Option<f64>,
     #[pyo3(from_py_with = maybe::gyro_scale)] gyro_scale: Option<f64>,
     #[pyo3(from_py_with = maybe::gyro_axis_scales)] gyro_axis_scales: Option<f64>,
@@ -102,13 +106,26 @@ pub(crate) fn fitted(
         Some(attitude) => Measured::attitudes(t, attitude, order, rates, windows)?,
     };
     let sigma = |name, value: Option<f64>| value.map(|value| positive(name, value)).transpose();
-    let known = match (trace, momentum, twice_energy) {
-        (None, None, None) => None,
-        (Some(trace), None, None) => Some(Known::Trace(trace)),
-        (None, Some(momentum), None) => Some(Known::Momentum(momentum)),
-        (None, None, Some(energy)) => Some(Known::TwiceEnergy(energy)),
-        _ => return Err(refused("trace, momentum, twice_energy: give one of them")),
+    let moment = Numbers::maybe("moment", moment)?.map(Numbers::fixed::<4>).transpose()?;
+    let moment = moment.map(|[x, y, z, value]| Known::Moment { axis: Vector3::new(x, y, z), value });
+    let sizes = [
+        trace.map(Known::Trace),
+        momentum.map(Known::Momentum),
+        twice_energy.map(Known::TwiceEnergy),
+        moment,
+    ];
+    let mut sizes = sizes.into_iter().flatten();
+    let (known, None) = (sizes.next(), sizes.next()) else {
+        return Err(refused("trace, momentum, twice_energy, moment: give one of them"));
     };
+    let rows = |name, value: Option<&Bound<'_, PyAny>>| -> PyResult<Vec<[f64; 4]>> {
+        Ok(Numbers::maybe(name, value)?.map(|rows| rows.rows(None)).transpose()?.unwrap_or_default())
+    };
+    let about = |x, y, z| Limit { axis: Vector3::new(x, y, z), at_least: None, at_most: None };
+    let least = rows("at_least", at_least)?.into_iter();
+    let least = least.map(|[x, y, z, share]| Limit { at_least: Some(share), ..about(x, y, z) });
+    let most = rows("at_most", at_most)?.into_iter();
+    let most = most.map(|[x, y, z, share]| Limit { at_most: Some(share), ..about(x, y, z) });
     let prior = match (prior, prior_sigma) {
         (None, None) if !prior_shape => None,
         (Some(prior), Some(sigma)) => {
@@ -123,6 +140,7 @@ pub(crate) fn fitted(
         .with_attitude_noise(sigma("attitude_noise", attitude_noise)?)
         .with_prior(prior)
         .with_known(known)
+        .with_limits(least.chain(most).collect())
         .with_check_units(!trust_units)
         .with_torque(model(torque)?)
         .with_quantum(sigma("quantum", quantum)?)

@@ -159,6 +159,27 @@ def test_a_fit_finds_the_ratios_and_says_how_well():
     assert "offset_x" in estimate.systematic and "I1 / trace" in repr(estimate) and "<svg" in estimate._repr_html_()
     sized = polhode.fit(*simulated(), trace=5.5)
     assert_allclose(np.trace(sized.inertia), 5.5)
+    # about an axis of any length
+    assert_allclose(polhode.fit(*simulated(), moment=[0, 0, 2, 2.5]).inertia[2, 2], 2.5)
+
+
+def test_limits_of_moments_hold():
+    free = polhode.fit(*simulated())
+    assert 0.15 < free.shape[0, 0] < 0.2
+    assert polhode.fit(*simulated(), at_least=[[1, 0, 0, 0.15]], at_most=[[1, 0, 0, 0.2]]).active_constraints == []
+    for limit, share in [("at_least", 0.2), ("at_most", 0.15)]:
+        with pytest.warns(PolhodeWarning, match="the record contradicts them"):
+            held = polhode.fit(*simulated(), **{limit: [[3, 0, 0, share]]})
+        assert_allclose(held.shape[0, 0], share, rtol=1e-9)
+        assert held.active_constraints[0]["name"].startswith("limit 1: moment about")
+    for wrong, says in [
+        (dict(moment=[0, 0, 1]), r"moment: an array of shape \(3,\); it must be of shape \(4,\)"),
+        (dict(moment=[0, 0, 1, 2.5], trace=5.5), "trace, momentum, twice_energy, moment: give one of them"),
+        (dict(at_most=[1, 0, 0, 0.2]), r"at_most: an array of shape \(4,\); it must be of shape \(n, 4\)"),
+        (dict(at_least=[[1, 0, 0, 2]]), "it must be a share of the trace, from 0 to 1"),
+    ]:
+        with pytest.raises(PolhodeError, match=says):
+            polhode.fit(*simulated(), **wrong)
 
 
 def test_a_fit_says_how_its_record_was_read_and_what_to_do_next(tmp_path):
