@@ -166,7 +166,7 @@ pub(crate) fn drag(
     body::Force::drag(linear, quadratic).map(Force::from).map_err(refused)
 }
 
-fn function(value: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
+fn law_of(value: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
     called("torque", "torque(t, attitude, omega)", value)
 }
 
@@ -182,7 +182,7 @@ fn function(value: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
 /// >>> bool(run.energy[1] < run.energy[0])
 /// True
 #[pyfunction]
-pub(crate) fn force(name: String, #[pyo3(from_py_with = function)] torque: Py<PyAny>) -> Force {
+pub(crate) fn force(name: String, #[pyo3(from_py_with = law_of)] torque: Py<PyAny>) -> Force {
     let raised = Raised::default();
     let keeper = raised.clone();
     let law = move |t: f64, q: UnitQuaternion<f64>, omega: Vector3<f64>| {

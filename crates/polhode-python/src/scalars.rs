@@ -57,7 +57,7 @@ pub(crate) mod number {
 
 /// Of numbers that may be left out.
 pub(crate) mod maybe {
-    use super::{Bound, PyAny, PyResult, scalar};
+    use super::{Bound, PyAny, PyAnyMethods, PyResult, scalar};
 
     reading! {
         maybe attitude_noise budget carrier_mass density end energy_error gyro_axis_scales gyro_bias gyro_misalignment gyro_scale
