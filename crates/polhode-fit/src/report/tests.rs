@@ -843,7 +843,8 @@ fn correlations_are_covariances_over_deviations() {
 }
 
 /// Of rates beside attitudes what was taken out of them is told, in rad/s or as a share, and what the motion leaves of them where it is more than
-/// chance brings over the noise that is given, or told by neighbours: of 40 numbers 1 + 5 √(10/40).
+/// chance brings over the noise that is given, or told by neighbours: of 40 numbers 1 + 5 √(10/40) of the square. A noise that is given
+/// and more than twice the root of that times as large is named.
 #[test]
 fn rates_beside_attitudes_are_warned_of_by_what_is_left() {
     let free = |times: f64, misread: Option<Misread>, is_aligned: bool| {
@@ -883,8 +884,15 @@ fn rates_beside_attitudes_are_warned_of_by_what_is_left() {
     left(1.001 * most, 1.0, None);
     left(1.001 * most, 0.5, Some(0.5));
     assert!(of_rates(&free(1.001 * most, None, true), Some(2.0)).is_empty());
+    // 2 √3.5 is 3.7417
+    assert!(of_rates(&free(1.0, None, true), Some(3.741)).is_empty());
+    let (stated, shown) = (3.742, 1.0);
+    assert_eq!(of_rates(&free(shown, None, true), Some(stated)), [Warning::StatedNoise { stated, shown }]);
+    // that of neighbours nobody has stated
+    assert!(of_rates(&free(0.01, None, true), None).is_empty());
     // without both there is no alignment
     assert!(of_rates(&free(9.0, None, false), None).is_empty());
+    assert!(of_rates(&free(0.01, None, false), Some(9.0)).is_empty());
     let misread = |error| {
         let offset = Vector3::new(0.375, 0.0, -0.5);
         Some(Misread { error, offset, scale: -0.05, gain: 60.0, spread: Form::zeros() })

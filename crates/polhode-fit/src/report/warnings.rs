@@ -251,7 +251,7 @@ pub(super) fn of_likelihood(e: &Estimate, doubts: &Doubts) -> Vec<Warning> {
 }
 
 /// What is said of rates beside attitudes: an error that was taken out of them, one that is left, and what the motion leaves of them over
-/// their noise, which is `given` or told by neighbours.
+/// their noise, which is `given` or told by neighbours; or a given noise that is far more.
 pub(super) fn of_rates(free: &Free, given: Option<f64>) -> Vec<Warning> {
     let unit = free.read.unit;
     let named = |error, offset: f64, scale, gain, is_fitted| match error {
@@ -270,7 +270,12 @@ pub(super) fn of_rates(free: &Free, given: Option<f64>) -> Vec<Warning> {
     let most = by_chance(free.followed.dof[1]).max(RESIDUALS);
     let beyond = beyond.filter(|(times, _)| times * times > most);
     let beyond = beyond.map(|(times, noise)| Warning::RateResiduals { times, noise });
-    [taken, left, beyond].into_iter().flatten().collect()
+    // no torque noise is fitted beside rates: what is left of them is theirs
+    let shown = free.followed.levels.rate * unit;
+    let least = STATED * by_chance(free.followed.dof[1]).sqrt() * shown;
+    let less = given.filter(|stated| free.followed.model.is_aligned && *stated > least);
+    let less = less.map(|stated| Warning::StatedNoise { stated, shown });
+    [taken, left, beyond, less].into_iter().flatten().collect()
 }
 
 /// What limits the use of a tensor of attitudes under torques; `misfit` is what is left over the noise, where that is known, `density` that of torque noise.

@@ -313,6 +313,24 @@ fn rates_that_the_motion_does_not_explain_are_told() {
     assert!((1.25..1.6).contains(&times), "{times}");
 }
 
+/// A noise of rates beside attitudes that is stated more than twice as large as theirs is named with theirs, and one that is not is not.
+#[test]
+fn a_stated_noise_that_rates_beside_attitudes_do_not_have_is_named() {
+    let toss = toss(ASYMMETRIC, 20.0, 30.0, 1e-2, 4);
+    let rates = toss.rates(|_| UnitQuaternion::identity(), 0.02);
+    let both = Poses::with_rates("toss", &toss.times, &toss.measured, &rates).unwrap();
+    for (given, is_named) in [(0.02, false), (0.035, false), (0.1, true)] {
+        let e = fit_poses(&both, &Settings::default().with_noise(given)).unwrap();
+        let found = e.warnings.iter().find_map(|warning| match warning {
+            Warning::StatedNoise { stated, shown } => Some((*stated, *shown)),
+            _ => None,
+        });
+        assert_eq!(found.is_some(), is_named, "{given}: {:?}", e.warnings);
+        let is_right = |(stated, shown): (f64, f64)| stated == given && (shown / 0.02 - 1.0).abs() < 0.1;
+        assert!(found.is_none_or(is_right), "{found:?}");
+    }
+}
+
 #[test]
 fn what_attitudes_do_not_tell_is_refused_with_its_numbers() {
     // half a turn between samples
