@@ -14,16 +14,18 @@ use crate::thresholds::poses::{HALF_TURN, STILL};
 pub enum PoseFault {
     /// Nearly half a turn, or more, from one attitude to the next.
     #[error(
-        "from sample {} of {source_name} to the next the attitude turns by {turn:.3} rad, or the other way round by {:.3} rad: beyond pi = \
-         3.14 no motion can be told from its samples, and these would be rates of {:.3e} and {:.3e} rad/s; record {:.3e} attitudes a \
+        "from sample {} of {source_name}, at {} s, to the next that is used, {step:.3e} s later, the attitude turns by {turn:.3} rad, or the \
+         other way round by {:.3} rad: beyond pi = 3.14 no motion can be told from its samples, and these would be rates of {:.3e} and {:.3e} rad/s; record {:.3e} attitudes a \
          second or more, which tells the two apart, or leave out the sample if it is a bad one",
-        sample, TAU - turn, turn / step, (TAU - turn) / step, (TAU - turn) / step / HALF_TURN
+        sample, Shown(*time), TAU - turn, turn / step, (TAU - turn) / step, (TAU - turn) / step / HALF_TURN
     )]
     HalfTurn {
         /// Where they come from.
         source_name: String,
-        /// The first of the two, from 1.
+        /// The first of the two, from 1, of all that were given.
         sample: usize,
+        /// Its time, s.
+        time: f64,
         /// The shorter turn, rad.
         turn: f64,
         /// Time between the two, s.
@@ -148,9 +150,19 @@ mod tests {
             let text = fault.to_string();
             assert!(parts.iter().all(|part| text.contains(part)), "{text}: {parts:?}");
         };
-        let half = PoseFault::HalfTurn { source_name: "a.csv".into(), sample: 7, turn: 3.0, step: 0.5 };
+        let half =
+            PoseFault::HalfTurn { source_name: "a.csv".into(), sample: 7, time: 12.25, turn: 3.0, step: 0.5 };
         // 2 π − 3 = 3.28319, over 0.5 and that over 2.83
-        says(half, &["sample 7 of a.csv", "3.283 rad", "6.000e0 and 6.566e0", "2.320e0 attitudes"]);
+        says(
+            half,
+            &[
+                "sample 7 of a.csv, at 12.25 s, to",
+                "5.000e-1 s later",
+                "3.283 rad",
+                "6.000e0 and 6.566e0",
+                "2.320e0 attitudes",
+            ],
+        );
         says(PoseFault::NoTurn { turn: 0.02, noise: 0.01 }, &["2.00e-2 rad in all", "more than 5.00e-2 rad"]);
         let not_free = |noise| PoseFault::NotFree { residual: 0.04, noise, turn: 1.5 };
         says(not_free(Some(0.01)), &["4.00e-2 rad (root", "noise is 1.00e-2 rad", "(1.50 rad as read)"]);

@@ -208,9 +208,10 @@ fn check_turns(s: &PoseSegment, kept: &[usize], attitudes: &[Quat<f64>]) -> Resu
     let turns = turns(attitudes);
     let far = turns.iter().position(|turn| *turn > HALF_TURN);
     if let Some(k) = far {
-        let step = s.times[kept[k + 1]] - s.times[kept[k]];
+        let time = s.times[kept[k]];
+        let step = s.times[kept[k + 1]] - time;
         let (source_name, sample) = (s.source().to_string(), s.samples[kept[k]]);
-        return Err(PoseFault::HalfTurn { source_name, sample, turn: turns[k], step }.into());
+        return Err(PoseFault::HalfTurn { source_name, sample, time, turn: turns[k], step }.into());
     }
     Ok(turns.into_iter().fold(0.0, f64::max))
 }
@@ -429,7 +430,9 @@ mod tests {
         };
         assert!(of(2.77).is_ok_and(|found| (found.largest_turn - 2.82).abs() < 1e-12));
         let Err(FitError::Poses(fault)) = of(2.79) else { panic!() };
-        let PoseFault::HalfTurn { sample: 9, turn, step: 0.5, .. } = fault else { panic!("{fault}") };
+        let PoseFault::HalfTurn { sample: 9, time: 7.0, turn, step: 0.5, .. } = fault else {
+            panic!("{fault}")
+        };
         assert!((turn - 2.84).abs() < 1e-12);
         let Err(FitError::TooFewSamples { samples: 7, segments: 1, longest: 7, .. }) =
             looked_at(&poses(&[0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6]), &Settings::default())
