@@ -189,7 +189,8 @@ impl Estimate {
         named(py, &self.found.torque.coefficients)
     }
 
-    /// What each model of the torque makes of the record: a dict by model of `gain` (log-likelihood less that without a torque), `share`,
+    /// What each model of the torque makes of the record: a dict by model of `gain` (log-likelihood less that without a torque), `torque_noise` (whether
+    /// that has a level of torque noise, which may take the place of a torque), `share`,
     /// `principal`, `sigma_principal`, `ratios`, `sigma_ratios`, `unexplained` and `held_out`; of a fit to attitudes in closed form those of no torque, drag and a small constant torque.
     #[getter]
     fn models<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -197,6 +198,7 @@ impl Estimate {
         for one in &self.found.models {
             let entry = PyDict::new(py);
             entry.set_item("gain", one.gain)?;
+            entry.set_item("torque_noise", one.has_torque_noise)?;
             entry.set_item("share", one.share)?;
             entry.set_item("principal", array(py, one.principal.to_vec(), &[3])?)?;
             entry.set_item("sigma_principal", array(py, one.sigma_principal.to_vec(), &[3])?)?;
@@ -211,7 +213,7 @@ impl Estimate {
 
     /// What errors of the sensor, and of the momentum of wheels, make of the record in the place of a torque: a dict by error (`misalignment`,
     /// `axis-scales`, `offsets`, `delays`, `wheel-x`, `wheel-y`, `wheel-z`) of
-    /// `size` (rad, a ratio, rad/s, s), `gain`, `share`, `principal`, `sigma_principal` and `held_out` as of [`models`](Self::models); empty of a fit to
+    /// `size` (rad, a ratio, rad/s, s), `gain`, `torque_noise`, `share`, `principal`, `sigma_principal` and `held_out` as of [`models`](Self::models); empty of a fit to
     /// attitudes.
     #[getter]
     fn reading_errors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -220,6 +222,7 @@ impl Estimate {
             let entry = PyDict::new(py);
             entry.set_item("size", one.size)?;
             entry.set_item("gain", one.gain)?;
+            entry.set_item("torque_noise", one.has_torque_noise)?;
             entry.set_item("share", one.share)?;
             entry.set_item("principal", array(py, one.principal.to_vec(), &[3])?)?;
             entry.set_item("sigma_principal", array(py, one.sigma_principal.to_vec(), &[3])?)?;

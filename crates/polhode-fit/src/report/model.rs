@@ -16,7 +16,10 @@ use crate::units::Motion;
 pub struct ModelFit {
     /// The model.
     pub model: TorqueModel,
-    /// Log-likelihood less that without a torque; each coefficient adds a half where it is of no use.
+    /// Whether a level of torque noise is one of its unknowns: such noise may take the place of a torque.
+    pub has_torque_noise: bool,
+    /// Log-likelihood less that without a torque; each coefficient adds a half where it is of no use. Of a model that was not fitted by
+    /// itself it is that of the first order about the answer: far below zero it says that the model is refuted, and not by how much.
     pub gain: f64,
     /// Its share among all, each with its likelihood less one for every coefficient.
     pub share: f64,
@@ -43,7 +46,9 @@ pub struct ErrorFit {
     pub error: ReadingError,
     /// Its largest component: an angle, rad, a ratio, an offset, rad/s, or a delay, s.
     pub size: f64,
-    /// Log-likelihood less that without torque and error.
+    /// Whether torque noise acts beside it.
+    pub has_torque_noise: bool,
+    /// Log-likelihood less that without torque and error, of the first order as that of [`ModelFit::gain`].
     pub gain: f64,
     /// Its share among the models, as [`ModelFit::share`]; zero where no torque was chosen and it explains little.
     pub share: f64,
@@ -94,6 +99,7 @@ pub(crate) fn models(weighed: &[Weighed], chosen: TorqueModel, motion: Option<&M
         let Shown { principal, sigma_principal, ratios, sigma_ratios } = Shown::of(one);
         ModelFit {
             model: one.model,
+            has_torque_noise: one.has_noise,
             gain: one.gain,
             share,
             principal,
@@ -116,6 +122,7 @@ pub(crate) fn reading_errors(weighed: &[Weighed], chosen: TorqueModel) -> Vec<Er
         Some(ErrorFit {
             error,
             size,
+            has_torque_noise: one.has_noise,
             gain,
             share,
             principal,
@@ -180,19 +187,21 @@ mod tests {
     /// 2/3 and the products −1/3.
     #[test]
     fn each_model_has_its_moments_with_their_deviations() {
+        let noisy = |one: Weighed| Weighed { has_noise: true, ..one };
         let all = [
             of(TorqueModel::None, None, 0.0),
-            of(TorqueModel::None, Some((ReadingError::Delays, 2.5e-3)), 7.0),
-            of(TorqueModel::Drag, None, 1.0),
+            noisy(of(TorqueModel::None, Some((ReadingError::Delays, 2.5e-3)), 7.0)),
+            noisy(of(TorqueModel::Drag, None, 2.0)),
         ];
         let torques = models(&all, TorqueModel::None, None);
         let errors = reading_errors(&all, TorqueModel::None);
-        // a coefficient that gains one weighs as much as none, and an error nothing beside no torque
-        let told: Vec<_> = torques.iter().map(|one| (one.model, one.gain, one.share)).collect();
-        assert_eq!(told, [(TorqueModel::None, 0.0, 0.5), (TorqueModel::Drag, 1.0, 0.5)]);
+        // a coefficient that gains one weighs as much as none, noise is one, and an error weighs nothing beside no torque
+        let told: Vec<_> =
+            torques.iter().map(|one| (one.model, one.has_torque_noise, one.gain, one.share)).collect();
+        assert_eq!(told, [(TorqueModel::None, false, 0.0, 0.5), (TorqueModel::Drag, true, 2.0, 0.5)]);
         let [error] = &errors[..] else { panic!("{errors:?}") };
         assert_eq!((error.error, error.size, error.gain), (ReadingError::Delays, 2.5e-3, 7.0));
-        assert_eq!((error.share, error.held_out), (0.0, Some(1.5)));
+        assert_eq!((error.has_torque_noise, error.share, error.held_out), (true, 0.0, Some(1.5)));
         assert_eq!(error.to_string(), "delays 2.5 ms");
         let near = |found: &[f64], expected: &[f64]| {
             assert_eq!(found.len(), expected.len());

@@ -10,9 +10,9 @@ use polhode_pages::document::{Block, Form, Tone};
 use super::as_read::AsRead;
 use super::flights::Spans;
 use super::report::{
-    ENTRIES, Facts, MODELS, SURE, Segments, Sources, about_models, attitudes, component, digits, error_sizes,
-    four_digits, in_bursts, mirror, models, sensor_lines, sizes, systematic, two_places, unexplained, unseen,
-    unused, with_error,
+    ENTRIES, Facts, MODELS, SURE, Segments, Sources, about_gains, about_models, attitudes, component, digits,
+    error_sizes, four_digits, in_bursts, mirror, models, sensor_lines, sizes, systematic, two_places,
+    unexplained, unseen, unused, with_error,
 };
 
 /// The page of an estimate from the files `names`.
@@ -259,6 +259,7 @@ fn of_models(e: &Estimate) -> Vec<Block> {
         Block::Paragraph(about),
         Block::Table(heads, rows),
     ];
+    blocks.extend(about_gains(e).iter().map(|said| Block::Paragraph(format!("{}.", capital(said)))));
     let sizes = error_sizes(e);
     if !sizes.is_empty() {
         blocks.push(Block::Paragraph(format!("Largest errors: {}.", sizes.join(", "))));

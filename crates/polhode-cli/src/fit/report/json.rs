@@ -86,13 +86,15 @@ fn grounds(e: &Estimate, record: &Record, spans: &Spans) -> Value {
             "ratios_without": e.torque.ratios_without,
         },
         "models": e.models.iter().map(|one| json!({
-            "torque": one.model.to_string(), "log_likelihood": one.gain, "share": one.share,
+            "torque": one.model.to_string(), "torque_noise": one.has_torque_noise, "log_likelihood": one.gain,
+            "share": one.share,
             "principal": one.principal, "sigma_principal": one.sigma_principal,
             "ratios": one.ratios, "sigma_ratios": one.sigma_ratios,
             "unexplained_share": one.unexplained, "held_out": one.held_out,
         })).collect::<Vec<_>>(),
         "reading_errors": e.reading_errors.iter().map(|one| json!({
-            "error": one.error.to_string(), "size": one.size, "log_likelihood": one.gain, "share": one.share,
+            "error": one.error.to_string(), "size": one.size, "torque_noise": one.has_torque_noise,
+            "log_likelihood": one.gain, "share": one.share,
             "principal": one.principal, "sigma_principal": one.sigma_principal,
             "ratios": one.ratios, "sigma_ratios": one.sigma_ratios, "held_out": one.held_out,
         })).collect::<Vec<_>>(),

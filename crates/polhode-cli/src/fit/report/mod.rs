@@ -313,9 +313,11 @@ pub(super) fn unseen(e: &Estimate) -> String {
 pub(super) fn models(e: &Estimate) -> Vec<[String; 7]> {
     let ratio = |one: &ModelFit, k: usize| concise(one.ratios[k], one.sigma_ratios[k]);
     let percent = |share: f64| format!("{:.*} %", digits(100.0 * share).min(4), 100.0 * share);
+    let is_mixed = noise_differs(e);
+    let name = |name: String, is_noisy: bool| if is_mixed && is_noisy { name + "*" } else { name };
     let row = |one: &ModelFit| {
         [
-            one.model.to_string(),
+            name(one.model.to_string(), one.has_torque_noise),
             gain(one.gain),
             format!("{:.3}", one.share),
             ratio(one, 0),
@@ -328,14 +330,38 @@ pub(super) fn models(e: &Estimate) -> Vec<[String; 7]> {
         let ratio = |k: usize| concise(one.ratios[k], one.sigma_ratios[k]);
         let held_out = one.held_out.map_or("-".into(), |square| format!("{square:.3}"));
         let [gain, share] = [gain(one.gain), format!("{:.3}", one.share)];
-        [error_name(one), gain, share, ratio(0), ratio(1), "-".into(), held_out]
+        let name = name(error_name(one), one.has_torque_noise);
+        [name, gain, share, ratio(0), ratio(1), "-".into(), held_out]
     };
     e.models.iter().map(row).chain(e.reading_errors.iter().map(of_sensor)).collect()
 }
 
-/// A gain of log-likelihood. Far below, a model is refuted, and the number is that of its first order, which does not reach so far.
+/// Whether some of the models have torque noise, and others none.
+fn noise_differs(e: &Estimate) -> bool {
+    let of_torques = e.models.iter().map(|one| one.has_torque_noise);
+    let mut all = of_torques.chain(e.reading_errors.iter().map(|one| one.has_torque_noise));
+    all.next().is_some_and(|first| all.any(|other| other != first))
+}
+
+/// A gain of log-likelihood; so far below a model is refuted, and the number is that of a first order, which does not reach so far.
+const LEAST_GAIN: f64 = -1000.0;
+
 fn gain(gain: f64) -> String {
-    if gain < -1000.0 { "< -1000".into() } else { format!("{gain:.1}") }
+    if gain < LEAST_GAIN { "-".into() } else { format!("{gain:.1}") }
+}
+
+/// What is to be known of the gains, a sentence each: that some are of models with torque noise, and that some are not told.
+pub(super) fn about_gains(e: &Estimate) -> Vec<String> {
+    let of_torques = e.models.iter().map(|one| one.gain);
+    let mut gains = of_torques.chain(e.reading_errors.iter().map(|one| one.gain));
+    let noise = "*: with torque noise, which may take the place of a torque and counts as a coefficient";
+    let far = "gain -: refuted at the torque noise of the answer, by more than its first order tells";
+    let is_far = gains.any(|gain| gain < LEAST_GAIN);
+    [(noise_differs(e), noise), (is_far, far)]
+        .into_iter()
+        .filter(|said| said.0)
+        .map(|said| said.1.into())
+        .collect()
 }
 
 /// The heads of its columns.
@@ -371,7 +397,7 @@ mod tests {
     /// What is surely refuted has no number that a reader could take for one.
     #[test]
     fn gains_are_told_down_to_a_thousand() {
-        for (value, text) in [(1234.56, "1234.6"), (-1000.0, "-1000.0"), (-1_198_375.5, "< -1000")] {
+        for (value, text) in [(1234.56, "1234.6"), (-1000.0, "-1000.0"), (-1_198_375.5, "-")] {
             assert_eq!(gain(value), text);
         }
     }

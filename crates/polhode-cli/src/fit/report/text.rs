@@ -5,9 +5,9 @@ use polhode_fit::{Estimate, InvariantTrend, Nuisance, Record};
 use polhode_pages::screen::wrapped;
 
 use super::{
-    ENTRIES, MODELS, SURE, Segments, Sources, WIDTH, about_models, attitudes, component, digits, error_sizes,
-    four_digits, in_bursts, mirror, models, sizes, systematic, two_places, unexplained, unseen, unused,
-    with_error, wrapped_lines,
+    ENTRIES, MODELS, SURE, Segments, Sources, WIDTH, about_gains, about_models, attitudes, component, digits,
+    error_sizes, four_digits, in_bursts, mirror, models, sizes, systematic, two_places, unexplained, unseen,
+    unused, with_error, wrapped_lines,
 };
 
 /// The answer first, then what it rests on.
@@ -165,6 +165,7 @@ fn of_models(e: &Estimate) -> Vec<String> {
     let (what, deviations) = about.split_once("; ").unwrap_or((&about, ""));
     let mut lines = vec![String::new(), format!("{what};"), format!("{deviations}:")];
     lines.extend(all().map(line));
+    lines.extend(about_gains(e).iter().map(|said| format!("  {}", wrapped(said, WIDTH - 2, 2))));
     lines.extend(error_sizes(e).chunks(3).map(|sizes| format!("  {}", sizes.join(", "))));
     lines
 }
