@@ -9,6 +9,7 @@ mod polynomial;
 mod quantum;
 mod rows;
 mod segment;
+mod shared;
 mod spikes;
 
 use core::ops::Range;
@@ -27,6 +28,8 @@ pub use rows::RawRows;
 pub use segment::Inputs;
 use segment::NAMES;
 pub use segment::Segment;
+#[doc(hidden)]
+pub use shared::shared;
 pub use spikes::Spike;
 use spikes::{places, spikes};
 
@@ -296,13 +299,14 @@ impl Record {
         if spans.len() > self.segments.len() { self.spans(spans) } else { self }
     }
 
-    /// Whether it has the times and rates of every segment of `other`, if that has any.
+    /// How many samples of `other` it has too, by their rates alone: each file may count its times from its own first row.
     #[doc(hidden)]
     #[must_use]
-    pub fn holds(&self, other: &Record) -> bool {
-        let is_same = |a: &Segment, b: &Segment| a.times == b.times && a.rates == b.rates;
-        !other.segments.is_empty()
-            && other.segments.iter().all(|own| self.segments.iter().any(|of| is_same(own, of)))
+    pub fn shared(&self, other: &Record) -> usize {
+        fn rates(record: &Record) -> Vec<&[Vector3<f64>]> {
+            record.segments.iter().map(|s| &s.rates[..]).collect()
+        }
+        shared(&rates(self), &rates(other), |w| [w.x.to_bits(), w.y.to_bits(), w.z.to_bits()])
     }
 
     /// This record and another of the same body.

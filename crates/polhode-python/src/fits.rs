@@ -310,12 +310,14 @@ pub(crate) fn recorded(
         }
         let (mut all, mut files) = (record::Record::default(), Vec::new());
         for (k, Record { record, read_as }) in records.into_iter().enumerate() {
-            if all.holds(&record) {
+            let shared = all.shared(&record);
+            if shared > 0 {
+                let samples = record.samples();
                 warn(
                     t.py(),
                     &format!(
-                        "record {k} of the list: times and rates are those of records before it; readings that count twice make the \
-                         standard deviations too small"
+                        "record {k} of the list: {shared} of its {samples} samples are those of records before it; readings that count \
+                         twice make the standard deviations too small"
                     ),
                 )?;
             }

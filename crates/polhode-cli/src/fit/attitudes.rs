@@ -14,7 +14,7 @@ use polhode_fit::Poses;
 
 use super::frames::{Left, about_space};
 use crate::flags::attitude::{AttitudeArguments, check_matrices};
-use crate::flags::record::RecordArguments;
+use crate::flags::record::{RecordArguments, tell_shared};
 
 /// What of a file is fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -189,7 +189,11 @@ impl PoseArguments {
             }
             all = Some(match all {
                 None => one,
-                Some(before) => joined(before, one, path)?,
+                Some(before) => {
+                    let name = visible(&path.display().to_string()).into_owned();
+                    tell_shared(&name, (before.poses.shared(&one.poses), one.poses.samples()));
+                    joined(before, one, path)?
+                }
             });
         }
         let all = all.ok_or_else(|| Error::Input("--window: no file has samples in these windows".into()))?;

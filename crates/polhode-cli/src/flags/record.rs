@@ -118,12 +118,8 @@ impl RecordArguments {
         for (k, (of, path)) in each.enumerate() {
             let found = self.read(path, wheel)?;
             let record = self.cut(found.record, k)?;
-            if all.iter().any(|before| before.holds(&record)) {
-                warn(&format!(
-                    "{}: times and rates are those of a file before it; readings that count twice make the standard deviations too small",
-                    found.read_as.file
-                ));
-            }
+            let shared = all.iter().map(|before| before.shared(&record)).max().unwrap_or(0);
+            tell_shared(&found.read_as.file, (shared, record.samples()));
             all[of] = core::mem::take(&mut all[of]).join(record);
             read_as.push(found.read_as);
         }
@@ -202,6 +198,16 @@ pub(crate) fn of_a_row(error: Error) -> Error {
             Error::from(error.with_remedy(&remedy))
         }
         other => other,
+    }
+}
+
+/// Says how many of its samples a file shares with others, where it does.
+pub(crate) fn tell_shared(file: &str, (shared, samples): (usize, usize)) {
+    if shared > 0 {
+        warn(&format!(
+            "{file}: {shared} of its {samples} samples are those of a file before it; readings that count twice make the standard \
+             deviations too small: leave them out of one (--window)"
+        ));
     }
 }
 

@@ -172,7 +172,7 @@ fn what_a_joint_fit_cannot_use_is_refused() {
     // the same under another name
     let copy = scratch.file("copy.csv", std::fs::read_to_string(&carrier).unwrap());
     let twice = run(&format!("fit --carrier {carrier} --proof {copy} {PROOF}"));
-    let says = "the record of carrier and proof body has the times and rates of that of carrier";
+    let says = "the record of carrier and proof body has rates of that of carrier";
     assert!(twice.code == 2 && twice.err.contains(says), "{twice:?}");
     // answers that the records do not hold
     let same = scratch.0.join("same.csv").display().to_string();

@@ -103,14 +103,48 @@ fn a_wheel_is_calibrated_by_a_body_that_is_known() {
     );
 }
 
+/// Samples that two files have in common are counted, whole or in part, of rates and of attitudes, and where the second counts its times from
+/// its own first row; windows without them, and the same motion measured twice, are not.
 #[test]
 fn readings_under_two_names_are_said_to_count_twice() {
     let scratch = Scratch::new("fit-twice");
-    let text = output(&format!("{SIMULATE} --until 20 --noise 1e-3"));
-    let (one, copy) = (scratch.file("one.csv", &text), scratch.file("copy.csv", &text));
-    let told = run(&format!("fit {one} {copy}"));
-    assert!(told.err.contains("copy.csv: times and rates are those of a file before it"), "{told:?}");
-    assert!(!run(&format!("fit {one}")).err.contains("count twice"));
+    for (noise, from) in [("--noise 1e-3", "rates"), ("--attitude-noise 1e-3", "attitudes")] {
+        let text = output(&format!("{SIMULATE} --until 20 {noise}"));
+        let (one, copy) = (scratch.file("one.csv", &text), scratch.file("copy.csv", &text));
+        let count = text.lines().count() - 1;
+        let told = |line: &str| run(&format!("fit {line} --from {from}")).err;
+        let found = told(&format!("{one} {copy}"));
+        assert!(
+            found.contains(&format!("copy.csv: {count} of its {count} samples are those of a file")),
+            "{found}"
+        );
+        let (head, rows) = text.split_once('\n').unwrap();
+        let rows: Vec<(f64, &str)> = rows
+            .lines()
+            .map(|row| row.split_once(',').unwrap())
+            .map(|(t, row)| (t.parse().unwrap(), row))
+            .collect();
+        let part = |rows: &[(f64, &str)], start: f64| {
+            rows.iter().fold(head.to_string(), |text, (t, row)| format!("{text}\n{},{row}", t - start))
+        };
+        let (until, since) = (3 * count / 4, count / 2);
+        let first = scratch.file("first.csv", part(&rows[..until], 0.0));
+        for start in [0.0, rows[since].0] {
+            let second = scratch.file("second.csv", part(&rows[since..], start));
+            let found = told(&format!("{first} {second}"));
+            let says = format!("second.csv: {} of its {} samples are", until - since, count - since);
+            assert!(found.contains(&says), "{start}: {found}");
+            let end = rows[since].0 - 1e-3;
+            let found = told(&format!("{first} {second} --window 1:0,{end} --window 2:0,20"));
+            assert!(!found.contains("count twice"), "{start}: {found}");
+        }
+    }
+    // one motion twice in steps that hide most of the noise
+    let coarse =
+        |seed: u8| output(&format!("{SIMULATE} --until 20 --noise 1e-3 --quantum 0.01 --seed {seed}"));
+    let (one, two) = (scratch.file("one.csv", coarse(1)), scratch.file("two.csv", coarse(2)));
+    let found = run(&format!("fit {one} {two}")).err;
+    assert!(!found.contains("count twice"), "{found}");
 }
 
 #[test]

@@ -28,8 +28,8 @@ pub enum CarrierError {
     },
     /// Two records are one.
     #[error(
-        "the record of {attached} has the times and rates of that of {before}: with another body on it the carrier tumbles in another way; \
-         give each its own record"
+        "the record of {attached} has rates of that of {before}: with another body on it the carrier tumbles in another way; give each its \
+         own record"
     )]
     Same {
         /// What is said to have tumbled.

@@ -108,7 +108,7 @@ impl CarrierRecords {
     /// What is said to have tumbled in the first record that is one before it too, wholly or in part, and in that one.
     pub(super) fn repeated(&self) -> Option<(Attached, Attached)> {
         self.tumbles.iter().enumerate().find_map(|(k, Tumble { attached, record, .. })| {
-            let is_same = |before: &&Tumble| before.record.holds(record) || record.holds(&before.record);
+            let is_same = |before: &&Tumble| before.record.shared(record) > 0;
             self.tumbles[..k].iter().find(is_same).map(|before| (*attached, before.attached))
         })
     }

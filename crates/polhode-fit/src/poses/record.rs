@@ -1,7 +1,7 @@
 //! A record of measured attitudes.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use polhode::record::{Record, Segment, joined};
+use polhode::record::{Record, Segment, joined, shared};
 use polhode::rotation::Quat;
 
 use crate::likelihood::local;
@@ -246,6 +246,17 @@ impl Poses {
         self.gaps += other.gaps;
         self.direction_is_open |= other.direction_is_open;
         self
+    }
+
+    /// How many attitudes of `other` it has too, as [`Record::shared`] counts samples.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn shared(&self, other: &Poses) -> usize {
+        fn attitudes(poses: &Poses) -> Vec<&[Quat<f64>]> {
+            poses.segments.iter().map(|s| &s.attitudes[..]).collect()
+        }
+        let key = |q: &Quat<f64>| [q.w, q.v.0[0], q.v.0[1], q.v.0[2]].map(f64::to_bits);
+        shared(&attitudes(self), &attitudes(other), key)
     }
 
     /// The angular velocities beside the attitudes, or else those that parabolas through neighbouring attitudes have at some of their
