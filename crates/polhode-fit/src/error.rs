@@ -1,5 +1,6 @@
 //! Why a fit is refused.
 
+use polhode::num::Shown;
 use polhode::units::RateUnit;
 use thiserror::Error;
 
@@ -117,6 +118,40 @@ pub enum FitError {
         fall: Option<f64>,
         /// Moments, shares of the trace, of the body that explains the record if its axes are left-handed.
         mirror: Option<Box<[f64; 3]>>,
+    },
+    /// An axis reads one number all the time, and the others read noise.
+    #[error(
+        "the rate about {axis} is {} rad/s in all {samples} samples of {place}, where the others have a noise of {noise:.2e} rad/s: that axis \
+         is at the end of its range throughout, or reads nothing; record with a larger range, or see to its column",
+        Shown(*value)
+    )]
+    HeldAxis {
+        /// Which segment.
+        place: String,
+        /// x, y or z.
+        axis: char,
+        /// What it reads, rad/s.
+        value: f64,
+        /// Samples of the segment.
+        samples: usize,
+        /// Deviation of the noise of the others, rad/s.
+        noise: f64,
+    },
+    /// Two axes read the same numbers, down to their noise, or one reads the negative of the other.
+    #[error(
+        "the rates about {} and {} are of one size in all {samples} samples of {place}, down to their noise of {noise:.2e} rad/s: one \
+         column stands for both; name the columns of three axes",
+        axes[0], axes[1]
+    )]
+    SameAxes {
+        /// Which segment.
+        place: String,
+        /// x, y or z.
+        axes: [char; 2],
+        /// Samples of the segment.
+        samples: usize,
+        /// Deviation of their noise, rad/s.
+        noise: f64,
     },
     /// Errors of the sensor that were to be fitted leave the tensor open, which the record tells without them.
     #[error(

@@ -45,6 +45,7 @@ use crate::sparse::{is_sparse, likeliest};
 use crate::thresholds::test_functions::SAMPLES_PER_TEST;
 use crate::thresholds::warnings::UNCERTAIN;
 use crate::units::Motion;
+use crate::verdict::axes::check_axes;
 use crate::verdict::driven::{check_driven, check_inputs, check_order};
 use crate::verdict::told::check_told;
 use crate::verdict::units::open_units;
@@ -80,7 +81,7 @@ use crate::verdict::units::open_units;
 ///
 /// # Errors
 /// Too few samples; no rotation; a record that does not determine the tensor, with what it does determine; units that
-/// look mistaken; limits that contradict each other or the physical law; a program without a certified answer.
+/// look mistaken; an axis that reads nothing; limits that contradict each other or the physical law; a program without a certified answer.
 pub fn fit(record: &Record, settings: &Settings) -> Result<Estimate, FitError> {
     Ok(fitted(record, settings)?.estimate)
 }
@@ -116,7 +117,12 @@ pub(crate) fn fitted(record: &Record, settings: &Settings) -> Result<Fitted, Fit
         Some((spikes, rest)) => fit_to(&rest, settings, spikes),
         None => fit_to(record, settings, Vec::new()),
     };
-    fitted(record, settings).map_err(|mut error| {
+    let found = fitted(record, settings);
+    // another body may explain what an axis does not read
+    if matches!(found, Ok(_) | Err(FitError::Unsettled { .. } | FitError::Driven { .. })) {
+        check_axes(record)?;
+    }
+    found.map_err(|mut error| {
         let exact = SensorPriors::default();
         let is_untold = matches!(
             error,

@@ -47,6 +47,19 @@ fn refusals_say_their_numbers() {
         FitError::StatedNoise { rms: 1.0, stated: 0.6, shown: 0.01 },
         &["as 6.00e-1 rad/s, 60 times the 1.00e-2 rad/s", "square of 1.000e0 rad/s", ": check its value"],
     );
+    let (place, samples, noise) = (String::from("segment 2 (a.csv, from 1.5 s)"), 300, 0.02);
+    says(
+        FitError::HeldAxis { place: place.clone(), axis: 'z', value: 34.5, samples, noise },
+        &[
+            "about z is 34.5 rad/s in all 300 samples of segment 2",
+            "noise of 2.00e-2 rad/s",
+            "end of its range",
+        ],
+    );
+    says(
+        FitError::SameAxes { place, axes: ['y', 'z'], samples, noise },
+        &["about y and z are", "all 300 samples of segment 2 (a.csv", "one column stands for both"],
+    );
     let driven = |unexplained, growth, pull| FitError::Driven { unexplained, growth, pull };
     says(
         driven(Some(0.37), 0.012, 8.25),

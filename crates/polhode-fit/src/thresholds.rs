@@ -65,6 +65,11 @@ thresholds! {
         WHITE: f64 = 1.5,
             "factor between the variance of the noise of all samples and of every second one up to which it is white", "a_stated_noise_is_contradicted_where_the_readings_tell_it";
     }
+    axes: "axes that read nothing" {
+        FEWEST: usize = 50,
+            "samples in which an axis may read one number by chance: at a noise of half a step a chance of 4e-9", DERIVED;
+        LEAST: f64 = 1e-5, "noise over the rates below which digits that a file leaves out may hold an axis still", DERIVED;
+    }
     filtered: "noise of readings that was filtered before they were sampled" {
         SLOW: f64 = 0.15,
             "largest turn from one sample of the shortest stride to the next, rad: a motion then does not look like filtered noise", "a_motion_and_other_noise_are_no_filter";

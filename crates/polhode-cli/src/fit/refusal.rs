@@ -14,6 +14,7 @@ pub(super) fn reason(error: &FitError) -> String {
             format!("{error} (--attitude body-to-space or space-to-body)")
         }
         FitError::Poses(PoseFault::NotFree { .. }) => format!("{error} (--window t0,t1)"),
+        FitError::SameAxes { .. } => format!("{error} (--columns)"),
         FitError::UntoldSensor => format!(
             "{error} (smaller --gyro-bias, --gyro-scale, --gyro-axis-scales, --gyro-misalignment or --gyro-skew)"
         ),

@@ -39,7 +39,7 @@ pub(crate) fn off_cubic(t: [f64; 5]) -> [f64; 5] {
 
 /// That variance of noise that is white, so that every second sample shows the same. Of a motion whose samples are far apart, and of a sensor
 /// that filters, they show more.
-fn white(stretches: &[Stretch]) -> Option<f64> {
+pub(crate) fn white(stretches: &[Stretch]) -> Option<f64> {
     let second = |s: &Stretch| Stretch {
         times: s.times.iter().step_by(2).copied().collect(),
         rates: s.rates.iter().step_by(2).copied().collect(),

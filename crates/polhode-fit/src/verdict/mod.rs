@@ -1,5 +1,6 @@
 //! What the record says of the fit: verdicts, computed once and matched.
 
+pub(crate) mod axes;
 pub(crate) mod driven;
 pub(crate) mod judgement;
 pub(crate) mod prior;

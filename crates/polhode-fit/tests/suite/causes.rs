@@ -225,6 +225,31 @@ fn a_stated_noise_that_would_hide_the_rotation_is_named_with_that_of_the_reading
     assert!(matches!(error, FitError::NoRotation { .. }), "{error}");
 }
 
+/// The spin of a body that nutates lies beyond the range of its axis: what that axis reads is the rate of another body, which explains the
+/// rest to its noise, with I1/I3 off by fifty deviations. A dead axis and one column in the place of two are told too.
+#[test]
+fn an_axis_that_does_not_read_the_motion_is_refused() {
+    type Change = fn(&Vector3<f64>) -> Vector3<f64>;
+    let mut random = Random::new(653);
+    let body = Inertia::from_moments([1.0, 1.1, 1.5]).unwrap();
+    let times = sampled(200, 3);
+    let rates = simulate(&body, Vector3::new(2.0, 0.5, 40.0), &times, 0.02, &mut random).unwrap();
+    let of = |change: Change| {
+        let changed: Vec<Vector3<f64>> = rates.iter().map(change).collect();
+        fit(&Record::from_samples(&times, &changed).unwrap(), &Settings::default())
+    };
+    assert!(of(|w| *w).is_ok());
+    let beyond: Change = |w| Vector3::new(w.x, w.y, w.z.min(34.9));
+    let broken: Change = |w| Vector3::new(0.0, w.y, w.z);
+    for (change, held, reads) in [(beyond, 'z', 34.9), (broken, 'x', 0.0)] {
+        let refused = of(change);
+        let Err(FitError::HeldAxis { axis, value, samples, .. }) = refused else { panic!("{refused:?}") };
+        assert_eq!((axis, value, samples), (held, reads, times.len()));
+    }
+    let refused = of(|w| Vector3::new(w.x, w.x, w.z));
+    assert!(matches!(refused, Err(FitError::SameAxes { axes: ['x', 'y'], .. })), "{refused:?}");
+}
+
 /// Torque noise lets |J ω| and ω·J ω walk: their trends scatter as their deviations say.
 #[test]
 fn drifts_under_torque_noise_are_no_surer_than_the_walk_allows() {
