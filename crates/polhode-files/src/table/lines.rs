@@ -110,18 +110,28 @@ impl<'t> Lines<'t> {
             }
         }
         self.number += 1;
+        if self.number == 1 {
+            self.check_coding()?;
+        }
         let start = if self.bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         self.text.clear();
         match std::str::from_utf8(&self.bytes[start..]) {
             Ok(line) => self.text.push_str(line),
-            // the mark of byte order in two bytes
-            Err(_) if matches!(self.bytes[..], [0xff, 0xfe, ..] | [0xfe, 0xff, ..]) => {
-                let refused = self.refused(Rule::Other("the text is UTF-16".into()));
-                return Err(refused.with_remedy("save it as UTF-8"));
-            }
             Err(_) => return Err(self.refused(Rule::Utf8)),
         }
         Ok(true)
+    }
+
+    /// Refuses what is no text of bytes by the mark at its beginning.
+    fn check_coding(&self) -> Result<(), TableError> {
+        let (says, remedy) = match self.bytes[..] {
+            // the mark of byte order in two bytes
+            [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => ("the text is UTF-16", "save it as UTF-8"),
+            [0x1f, 0x8b, ..] => ("the file is compressed by gzip", "unpack it first"),
+            [b'P', b'K', 3, 4, ..] => ("the file is a zip archive, as a workbook is", "save its rows as CSV"),
+            _ => return Ok(()),
+        };
+        Err(self.refused(Rule::Other(says.into())).with_remedy(remedy))
     }
 
     /// A rule that the present line breaks.
@@ -147,9 +157,14 @@ mod tests {
 
     #[test]
     fn a_text_in_another_coding_is_refused_by_name() {
-        for (mark, says) in [([0xff, 0xfe], "UTF-16"), ([0xfe, 0xff], "UTF-16"), ([0xff, b'a'], "not UTF-8")]
-        {
-            let bytes: Vec<u8> = mark.into_iter().chain(*b"t\0\n\0").collect();
+        for (mark, says) in [
+            (&b"\xff\xfe"[..], "UTF-16"),
+            (&b"\xfe\xff"[..], "UTF-16"),
+            (&b"\x1f\x8b"[..], "gzip"),
+            (&b"PK\x03\x04"[..], "zip archive"),
+            (&b"\xffa"[..], "not UTF-8"),
+        ] {
+            let bytes: Vec<u8> = mark.iter().chain(b"t\0\n\0").copied().collect();
             let mut lines = Lines::new(Box::new(&bytes[..]), "x".into());
             assert!(lines.advance().unwrap_err().to_string().contains(says), "{mark:?}");
         }
