@@ -15,6 +15,7 @@ pub(super) fn reason(error: &FitError) -> String {
         }
         FitError::Poses(PoseFault::NotFree { .. }) => format!("{error} (--window t0,t1)"),
         FitError::SameAxes { .. } => format!("{error} (--columns)"),
+        FitError::Poses(PoseFault::FarApart { .. }) => format!("{error} (--attitude-noise)"),
         FitError::UntoldSensor => format!(
             "{error} (smaller --gyro-bias, --gyro-scale, --gyro-axis-scales, --gyro-misalignment or --gyro-skew)"
         ),
@@ -45,7 +46,10 @@ pub(super) fn facts(error: &FitError) -> (Option<Facts>, bool) {
         | FitError::StatedNoise { .. }
         | FitError::Solver(_)
         | FitError::Poses(
-            PoseFault::NoTurn { .. } | PoseFault::StatedNoise { .. } | PoseFault::HalfTurn { .. },
+            PoseFault::NoTurn { .. }
+            | PoseFault::FarApart { .. }
+            | PoseFault::StatedNoise { .. }
+            | PoseFault::HalfTurn { .. },
         ) => (None, true),
         _ => (None, false),
     }

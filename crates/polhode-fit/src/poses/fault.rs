@@ -41,6 +41,17 @@ pub enum PoseFault {
         /// Noise of a component, rad.
         noise: f64,
     },
+    /// The body turns so far from one attitude to the next that its motion looks like noise.
+    #[error(
+        "from one attitude to the next the body turns by up to {turn:.2} rad, and by {all:.2} rad in all: attitudes so far apart tell neither \
+         its motion nor their noise; record them faster, or state their noise"
+    )]
+    FarApart {
+        /// Largest turn from one attitude to the next, rad.
+        turn: f64,
+        /// Root mean square of the turn of an attitude from the first, rad.
+        all: f64,
+    },
     /// The attitudes would differ by their noise alone as it is stated, and not as neighbours show it.
     #[error(
         "the noise of the attitudes is stated as {stated:.2e} rad, and neighbouring ones show {shown:.2e} rad; their turn is too small for \
@@ -164,6 +175,7 @@ mod tests {
             ],
         );
         says(PoseFault::NoTurn { turn: 0.02, noise: 0.01 }, &["2.00e-2 rad in all", "more than 5.00e-2 rad"]);
+        says(PoseFault::FarApart { turn: 2.125, all: 2.25 }, &["up to 2.12 rad", "by 2.25 rad in all"]);
         let not_free = |noise| PoseFault::NotFree { residual: 0.04, noise, turn: 1.5 };
         says(not_free(Some(0.01)), &["4.00e-2 rad (root", "noise is 1.00e-2 rad", "(1.50 rad as read)"]);
         assert!(!not_free(None).to_string().contains("their noise"));

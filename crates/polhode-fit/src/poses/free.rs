@@ -94,9 +94,16 @@ impl Begun {
             if is_misstated {
                 return Err(PoseFault::StatedNoise { stated: noise, shown: local_noise }.into());
             }
-            return Err(does_turn(&stretches, noise)
-                .err()
-                .unwrap_or(FitError::NoRotation { rms: 0.0, noise }));
+            let error = does_turn(&stretches, noise).err();
+            return Err(match error {
+                // a motion that is left among the noise
+                Some(FitError::Poses(PoseFault::NoTurn { turn: all, .. }))
+                    if settings.attitude_noise.is_none() && largest_turn > COARSE =>
+                {
+                    PoseFault::FarApart { turn: largest_turn, all }.into()
+                }
+                other => other.unwrap_or(FitError::NoRotation { rms: 0.0, noise }),
+            });
         };
         let alignment = alignment_of(&nodes, &stretches, &rates, width)?;
         let turn = alignment.map_or(Quat::identity(), |alignment| alignment.turn);

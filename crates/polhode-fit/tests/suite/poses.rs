@@ -387,6 +387,23 @@ fn what_attitudes_do_not_tell_is_refused_with_its_numbers() {
     fit_poses(&Poses::new("few", &times, &measured).unwrap(), &Settings::default()).unwrap();
 }
 
+/// Attitudes five times a second of a telephone that turns by 9 rad/s look like noise to their neighbours, and are not said to stand still;
+/// where their noise is stated they tell the tensor.
+#[test]
+fn attitudes_that_are_far_apart_are_no_body_at_rest() {
+    let body = Inertia::from_moments([0.97, 4.05, 5.0]).unwrap();
+    let motion =
+        FreeMotion::from_omega(&body, UnitQuaternion::identity(), Vector3::new(1.0, 9.0, 2.0)).unwrap();
+    let times: Vec<f64> = (0..=10).map(|k| 0.2 * f64::from(k)).collect();
+    let measured = attitudes(&motion, &times, 5e-3, &mut Random::new(3));
+    let poses = Poses::new("phone", &times, &measured).unwrap();
+    let fault = refused(&poses);
+    let PoseFault::FarApart { turn, all } = fault else { panic!("{fault}") };
+    assert!((1.8..2.3).contains(&turn) && all > 1.8, "{turn} {all}");
+    let e = fit_poses(&poses, &Settings::default().with_attitude_noise(5e-3)).unwrap();
+    assert!((e.ratios[0] - 0.97 / 5.0).abs() < 5.0 * e.sigma_ratios[0] && e.sigma_ratios[0] < 0.01);
+}
+
 /// What attitudes at given times tell of a motion does not depend on when the clock was started.
 #[test]
 fn the_bound_knows_no_origin_of_time() {
