@@ -2,7 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use nalgebra::{Matrix3, Vector3};
-use polhode::inertia::Inertia;
+use polhode::inertia::{Inertia, InertiaShape};
 use polhode_files::error::Error;
 use polhode_files::numbers::{list, number, numbers, positive};
 use polhode_fit::{Estimate, Known, Prior, SensorPriors, TorqueModel};
@@ -102,6 +102,9 @@ pub(super) struct KnownArguments {
     read: ReadOnce,
 }
 
+/// Share of the trace by which a moment of --body may be another without a word: more than a drawing and a sensor are off by.
+const OTHER: f64 = 0.05;
+
 impl KnownArguments {
     /// The body that `--body` names.
     pub(super) fn body(&self) -> Result<Option<Inertia>, Error> {
@@ -110,15 +113,29 @@ impl KnownArguments {
         Ok(Some(self.read.or_read(read)?.inertia.clone()))
     }
 
-    /// That the moments of --body are those of the record's mirror, where they are.
-    pub(super) fn other_hand(&self, estimate: &Estimate) -> Result<Option<String>, Error> {
-        let (Some(body), Some(mirror)) = (self.body()?, &estimate.mirror) else { return Ok(None) };
+    /// What --body says against the answer: its moments are those of the record's mirror, or of another body.
+    pub(super) fn contradiction(&self, estimate: &Estimate) -> Result<Option<String>, Error> {
+        let Some(body) = self.body()? else { return Ok(None) };
         let of_body = body.shape().principal_moments();
         let apart = |from: [f64; 3]| (0..3).map(|k| (from[k] - of_body[k]).abs()).fold(0.0, f64::max);
         let largest = estimate.sigma_principal.iter().copied().fold(0.0, f64::max);
-        let (read, other) = (apart(estimate.principal), apart(mirror.principal_moments()));
-        Ok((read > 5.0 * largest && other < 0.2 * read).then(|| {
-            "the moments are not those of --body, and in left-handed axes they would be: a mirrored axis would explain it (--axes)".into()
+        let read = apart(estimate.principal);
+        let is_mirror = |mirror: &InertiaShape| apart(mirror.principal_moments()) < 0.2 * read;
+        if read <= 5.0 * largest {
+            return Ok(None);
+        }
+        if estimate.mirror.as_ref().is_some_and(is_mirror) {
+            return Ok(Some(
+                "the moments are not those of --body, and in left-handed axes they would be: a mirrored axis would explain it (--axes)".into(),
+            ));
+        }
+        let shares = |moments: [f64; 3]| moments.map(|share| format!("{share:.3}")).join(" : ");
+        Ok((read > OTHER).then(|| {
+            format!(
+                "the moments are {} of the trace, and those of --body, whose trace gives the size, {}: make sure that it is this body",
+                shares(estimate.principal),
+                shares(of_body)
+            )
         }))
     }
 

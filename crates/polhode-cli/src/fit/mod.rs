@@ -242,7 +242,7 @@ impl Fit {
         };
         let sources = (&spans, read.as_ref(), &as_read);
         output.write_whole(&report::identified(&estimate, &record, sources, format))?;
-        if let Some(remark) = self.known.other_hand(&estimate)? {
+        if let Some(remark) = self.known.contradiction(&estimate)? {
             warn(&remark);
         }
         // the JSON holds them too; a file of rows does not

@@ -141,7 +141,7 @@ impl RecordArguments {
     pub(crate) fn check_windows(&self, files: usize) -> Result<(), Error> {
         if let Some((n, w)) = self.window.iter().find_map(|w| w.file.filter(|n| *n > files).map(|n| (n, w))) {
             let value = format!("{n}:{:?},{:?}", w.span.0, w.span.1);
-            let rule = format!("there are {files} files");
+            let rule = if files == 1 { "there is 1 file".into() } else { format!("there are {files} files") };
             return Err(Error::input("--window", &value, &rule, "count them from 1"));
         }
         let without = (0..files).find(|k| !self.window.is_empty() && self.windows(*k).is_empty());

@@ -483,5 +483,9 @@ fn a_mirrored_axis_is_named_and_undone() {
     let phone = scratch.file("phone.csv", phone);
     let answer = run(&format!("fit {phone} --body phone --axes x,-y,z"));
     assert!(answer.err.contains("mirrored axis would explain it"), "{}", answer.err);
-    assert!(!run(&format!("fit {phone} --body phone")).err.contains("mirrored"));
+    let right = run(&format!("fit {phone} --body phone"));
+    assert!(!right.err.contains("mirrored") && !right.err.contains("--body"), "{right:?}");
+    // another body gives another size
+    let other = run(&format!("fit {phone} --body racket"));
+    assert!(other.err.contains("those of --body, whose trace gives the size, 0."), "{other:?}");
 }

@@ -22,6 +22,7 @@ use crate::smoothed::search::{self as smoothed, Found, Noise};
 use crate::thresholds::judgement::DRIVEN;
 use crate::thresholds::poses::OPEN;
 use crate::thresholds::smoothed::WALKS;
+use crate::verdict::axes::check_axes;
 
 /// Fits one tensor to all segments of measured attitudes, and to the angular velocities beside them where there are any.
 ///
@@ -57,12 +58,24 @@ use crate::thresholds::smoothed::WALKS;
 ///
 /// # Errors
 /// Too few attitudes; half a turn from one to the next; no rotation; attitudes that no motion follows, or that follow one the other way
-/// round; a direction that the motion does not tell; rates beside them of another size or hand; what [`fit`](crate::fit) refuses of a tensor
+/// round; a direction that the motion does not tell; rates beside them of another size or hand, or of an axis that reads nothing; what [`fit`](crate::fit) refuses of a tensor
 /// that is not determined, of limits and of priors.
 pub fn fit_poses(poses: &Poses, settings: &Settings) -> Result<Estimate, FitError> {
     settings.check()?;
     only_of_rates(poses, settings)?;
-    let mut estimate = fitted(poses, settings)?;
+    let found = fitted(poses, settings);
+    let is_of_motion = match &found {
+        Ok(_) => true,
+        Err(FitError::Poses(fault)) => matches!(
+            fault,
+            PoseFault::Unsettled | PoseFault::NotFree { .. } | PoseFault::Mirrored | PoseFault::Scale { .. }
+        ),
+        Err(_) => false,
+    };
+    if poses.has_rates() && is_of_motion {
+        check_axes(&poses.rates())?;
+    }
+    let mut estimate = found?;
     let short = short_segments(estimate.segments, poses.segments().len());
     estimate.warnings = short.into_iter().chain(estimate.warnings).collect();
     Ok(estimate)
@@ -121,6 +134,13 @@ fn told_by_motion(
             let is_inverse = gain < 0.0;
             let told = Told { is_inverse, gain: Some(gain.abs()) };
             finished(poses, settings, if is_inverse { &other } else { &free }, told)
+        }
+        // rates that turn the other way are a cause where the other direction has none
+        (Ok(free), Err(error @ FitError::Poses(PoseFault::Mirrored)))
+        | (Err(error @ FitError::Poses(PoseFault::Mirrored)), Ok(free))
+            if !free.is_explained(settings) =>
+        {
+            Err(error)
         }
         (Ok(free), Err(_)) => {
             finished(poses, settings, &free, Told { is_inverse: false, gain: Some(f64::INFINITY) })

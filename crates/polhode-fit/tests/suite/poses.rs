@@ -196,6 +196,11 @@ fn rates_beside_attitudes_are_aligned_and_both_tell() {
     let mirrored: Vec<Vector3<f64>> = rates.iter().map(|w| Vector3::new(-w.x, w.y, w.z)).collect();
     let mirrored = Poses::with_rates("toss", &toss.times, &toss.measured, &mirrored).unwrap();
     assert_eq!(refused(&mirrored), PoseFault::Mirrored);
+    assert_eq!(refused(&mirrored.with_open_direction()), PoseFault::Mirrored);
+    let broken: Vec<Vector3<f64>> = rates.iter().map(|w| Vector3::new(w.x, w.y, 0.0)).collect();
+    let broken = Poses::with_rates("toss", &toss.times, &toss.measured, &broken).unwrap();
+    let error = fit_poses(&broken, &Settings::default()).unwrap_err();
+    assert!(matches!(error, FitError::HeldAxis { axis: 'z', value: 0.0, .. }), "{error}");
     let degrees: Vec<Vector3<f64>> = rates.iter().map(|w| w.map(f64::to_degrees)).collect();
     let degrees = Poses::with_rates("toss", &toss.times, &toss.measured, &degrees).unwrap();
     let PoseFault::Scale { scale } = refused(&degrees) else { panic!() };
