@@ -289,7 +289,7 @@ fn unusable_input_is_refused_by_file_line_and_column() {
         &format!("fit {short} --window 5,6"),
         &["no samples between 5 s and 6 s", "from 0 s to 0.1 s"],
     );
-    refused(2, &format!("fit {short} --window 2:0,1"), &["--window: '2:0.0,1.0'", "there are 1 files"]);
+    refused(2, &format!("fit {short} --window 2:0,1"), &["--window: '2:0.0,1.0'", "there is 1 file"]);
     refused(
         2,
         &format!("fit {short} {wide} --window 1:0,0.1"),
