@@ -97,6 +97,21 @@ impl Element {
         self.value(attribute).map(|value| value.text.as_str())
     }
 
+    /// Refuses an attribute without a prefix that is none of these.
+    pub(super) fn only(&self, known: &[&str]) -> Result<(), String> {
+        let is_other = |name: &&str| !known.contains(name) && !name.contains(':');
+        match self.attributes.iter().map(|(name, _)| name.as_str()).find(is_other) {
+            Some(name) => Err(self.error(&format!("{name} is not read here; known: {}", known.join(", ")))),
+            None => Ok(()),
+        }
+    }
+
+    /// Which element in it is none of these, in words.
+    pub(super) fn unread(&self, known: &[&str]) -> Option<String> {
+        let is_other = |child: &&Element| !known.contains(&child.tag.as_str()) && !child.tag.contains(':');
+        self.children.iter().find(is_other).map(|child| child.error("is not read here"))
+    }
+
     /// This element and all below it, in the order of the file.
     pub(super) fn all(&self) -> Vec<&Element> {
         let mut found = vec![self];

@@ -146,6 +146,26 @@ fn is_massless(mass: f64, entries: &[f64]) -> bool {
     mass == 0.0 && entries.iter().all(|entry| *entry == 0.0)
 }
 
+/// Elements in a link that hold numbers of their own.
+const APART: [&str; 2] = ["plugin", "sensor"];
+
+/// A link without `<inertial>` states nothing, unless its mass or its tensor stand in an element of another name, as `<intertial>`.
+fn unstated(link: &Element) -> Result<Option<Given>, String> {
+    let is_stated =
+        |part: &&Element| ["mass", "inertia"].iter().any(|name| part.tag.eq_ignore_ascii_case(name));
+    let inside = link.children.iter().filter(|child| !APART.contains(&child.tag.as_str()));
+    match link.children.iter().chain(inside.flat_map(|child| &child.children)).find(is_stated) {
+        Some(part) => Err(part.error("stands outside of the <inertial> of the link, and is not read there")),
+        None => Ok(None),
+    }
+}
+
+/// Two remarks as one.
+fn remarks(one: Option<String>, other: Option<String>) -> Option<String> {
+    let all: Vec<String> = one.into_iter().chain(other).collect();
+    (!all.is_empty()).then(|| all.join("; "))
+}
+
 /// A mass that a body may have.
 fn positive(mass: f64) -> Result<f64, String> {
     if mass > 0.0 {
@@ -198,6 +218,87 @@ mod tests {
         assert!(found[2].1.starts_with("model:3: <xacro:arm>: xacro is not expanded"), "{found:?}");
         // a file of nothing else is not empty
         assert_eq!(defects(Language::Urdf, "<robot><xacro:include filename='a'/></robot>").len(), 1);
+    }
+
+    /// A mass in an element of another name, and an attribute that would turn or move the tensor and is not read, are no frames without a body.
+    #[test]
+    fn what_would_be_lost_by_its_name_is_a_defect() {
+        let urdf = |inside: &str| format!("<robot><link name='a'>{inside}</link></robot>");
+        let sdf = |inside: &str| {
+            format!("<sdf version='1.7'><model name='m'><link name='a'>{inside}</link></model></sdf>")
+        };
+        let mjcf =
+            |inside: &str| format!("<mujoco><worldbody><body name='a'>{inside}</body></worldbody></mujoco>");
+        let other = |text: &str| text.replace("inertial>", "intertial>");
+        let stated = format!("<inertial>{TENSOR}</inertial>");
+        let turned = format!("<inertial><origin xyz='0 0 1' quat_xyzw='0 0 1 0'/>{TENSOR}</inertial>");
+        let plain = "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>";
+        let outside = "<mass>: stands outside of the <inertial>";
+        for (language, text, says) in [
+            (Language::Urdf, urdf(&stated), ""),
+            (Language::Urdf, urdf(&other(&stated)), outside),
+            (Language::Urdf, urdf(TENSOR), outside),
+            (Language::Urdf, urdf(&turned), "<origin>: quat_xyzw is not read here; known: xyz, rpy"),
+            (
+                Language::Urdf,
+                urdf(&stated).replace("link", "Link"),
+                "<Link>: names of elements have small letters",
+            ),
+            (Language::Sdf, sdf(INERTIAL), ""),
+            (Language::Sdf, sdf(&other(INERTIAL)), outside),
+            (Language::Sdf, sdf("<plugin name='p'><mass>1</mass></plugin>"), ""),
+            (Language::Mjcf, mjcf(plain), ""),
+            (Language::Mjcf, mjcf(&plain.replace("inertial", "intertial")), "<intertial>: states a tensor"),
+            (
+                Language::Mjcf,
+                mjcf(&plain.replace("pos=", "eular='1 2 3' pos=")),
+                "<inertial>: eular is not read here",
+            ),
+        ] {
+            let found = defects(language, &text);
+            let [(_, defect)] = &found[..] else { panic!("{text}: {found:?}") };
+            assert!(defect.contains(says) && defect.is_empty() == says.is_empty(), "{text}: {defect}");
+        }
+    }
+
+    /// Angles of more than a full turn may be in degrees, where the file says radians, and an element that is not read is named.
+    #[test]
+    fn angles_beyond_a_turn_and_elements_that_are_not_read_are_told() {
+        let urdf = |origin: &str| {
+            format!("<robot><link name='a'><inertial>{origin}{TENSOR}</inertial></link></robot>")
+        };
+        let sdf = |pose: &str| INERTIAL.replace("<inertial>", &format!("<inertial>{pose}"));
+        let sdf = |pose: &str| {
+            format!("<sdf version='1.7'><model name='m'><link name='a'>{}</link></model></sdf>", sdf(pose))
+        };
+        let mjcf = |angle: &str, turn: &str| {
+            format!(
+                "<mujoco><compiler angle='{angle}'/><worldbody><body name='a'>\
+                 <inertial pos='0 0 0' {turn} mass='1' diaginertia='1 1 1'/></body></worldbody></mujoco>"
+            )
+        };
+        let turn = "is it in degrees? the file says radians";
+        for (language, text, says) in [
+            (Language::Urdf, urdf("<origin rpy='0 0 6.3'/>"), None),
+            (Language::Urdf, urdf("<origin rpy='0 -90 0'/>"), Some(turn)),
+            (Language::Urdf, urdf("<Origin xyz='0 0 1'/>"), Some("<Origin>: is not read here")),
+            (Language::Sdf, sdf("<pose>0 0 100 0 0 1.5</pose>"), None),
+            (Language::Sdf, sdf("<pose>0 0 0 0 0 90</pose>"), Some(turn)),
+            (Language::Sdf, sdf("<pose degrees='true'>0 0 0 0 0 90</pose>"), None),
+            (Language::Sdf, sdf("<Pose>0 0 1 0 0 0</Pose>"), Some("<Pose>: is not read here")),
+            (Language::Mjcf, mjcf("degree", "euler='0 0 90'"), None),
+            (Language::Mjcf, mjcf("radian", "euler='0 0 90'"), Some(turn)),
+            (Language::Mjcf, mjcf("radian", "axisangle='0 0 90 1'"), None),
+            (Language::Mjcf, mjcf("radian", "axisangle='0 0 1 90'"), Some(turn)),
+        ] {
+            let found = read(language, Path::new("model"), &text, None).unwrap();
+            let [Given { defect: None, remark, .. }] = &found[..] else { panic!("{text}: {found:?}") };
+            let is_told = match says {
+                Some(says) => remark.as_ref().is_some_and(|remark| remark.contains(says)),
+                None => remark.is_none(),
+            };
+            assert!(is_told, "{text}: {remark:?}");
+        }
     }
 
     #[test]

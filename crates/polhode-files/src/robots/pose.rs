@@ -39,6 +39,14 @@ pub(super) fn roll_pitch_yaw([roll, pitch, yaw]: [f64; 3]) -> UnitQuaternion<f64
     product(about(z, yaw), product(about(y, pitch), about(x, roll)))
 }
 
+/// That angles in radians go beyond a full turn, as angles in degrees would, in words; 2 π may be typed with three digits.
+pub(super) fn beyond_a_turn(angles: &[f64]) -> Option<String> {
+    let largest = angles.iter().fold(0.0, |most: f64, angle| most.max(angle.abs()));
+    (largest > 1.01 * core::f64::consts::TAU).then(|| {
+        format!("its axes turn by an angle of {largest} rad, more than a full turn: is it in degrees? the file says radians")
+    })
+}
+
 /// A turn by angles x, y, z in the order of `sequence`: axes of the turned frame in small letters, fixed ones in capitals.
 ///
 /// `None` of letters that are no axes.

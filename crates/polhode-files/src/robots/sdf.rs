@@ -3,8 +3,8 @@
 use nalgebra::Matrix3;
 
 use super::element::Element;
-use super::pose::{quarter_turns_exact, roll_pitch_yaw};
-use super::{Given, is_massless, link, positive, writing};
+use super::pose::{beyond_a_turn, quarter_turns_exact, roll_pitch_yaw};
+use super::{Given, is_massless, link, positive, remarks, unstated, writing};
 
 /// Every link, with the names of the models around it where there are several.
 pub(super) fn links(document: &Element) -> Vec<Given> {
@@ -31,9 +31,9 @@ fn collect(element: &Element, scope: &str, scoped: bool, found: &mut Vec<Given>)
             "link" => {
                 let inertial = child.single("inertial");
                 let is_silent = matches!(inertial, Ok(None));
-                let given = inertial.and_then(|inertial| inertial.map_or(Ok(None), stated));
+                let given = inertial.and_then(|own| own.map_or_else(|| unstated(child), stated));
                 let mut given = link(&format!("{scope}{name}"), child, given);
-                if is_silent {
+                if is_silent && given.defect.is_none() {
                     given.add_remark("states no <inertial>, for which the format has 1 kg and 1 kg m^2");
                 }
                 found.push(given);
@@ -69,7 +69,7 @@ fn stated(inertial: &Element) -> Result<Option<Given>, String> {
             inertial.error("auto: inertia from the collision shapes is not computed; state <inertia>")
         );
     }
-    let [x, y, z, roll, pitch, yaw] = match inertial.single("pose")? {
+    let ([x, y, z, roll, pitch, yaw], beyond) = match inertial.single("pose")? {
         Some(pose) => {
             // which is called frame before 1.7
             let named = |name: &&str| pose.attribute(name).is_some_and(|frame| !frame.is_empty());
@@ -79,7 +79,7 @@ fn stated(inertial: &Element) -> Result<Option<Given>, String> {
             }
             angles_in_radians(pose)?
         }
-        None => [0.0; 6],
+        None => ([0.0; 6], None),
     };
     let mass = inertial.single("mass")?.ok_or_else(|| inertial.error("<mass> is missing"))?;
     let [value] = mass.content::<1>()?;
@@ -107,18 +107,24 @@ fn stated(inertial: &Element) -> Result<Option<Given>, String> {
         mass: Some(positive(value).map_err(|error| mass.error(&error))?),
         center_of_mass: [x, y, z].into(),
         turn: quarter_turns_exact(roll_pitch_yaw([roll, pitch, yaw])),
+        remark: remarks(beyond, inertial.unread(&INERTIAL).or_else(|| inertia.unread(&names))),
         writing: Some(writing(inertia, children.map(|child| child.and_then(|child| child.text.as_ref())))),
         ..Given::of_tensor(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz))
     }))
 }
 
-fn angles_in_radians(pose: &Element) -> Result<[f64; 6], String> {
+/// What may stand in `<inertial>`.
+const INERTIAL: [&str; 6] = ["pose", "mass", "inertia", "density", "auto_inertia_params", "fluid_added_mass"];
+
+/// Place and angles, and what is to be known of these.
+fn angles_in_radians(pose: &Element) -> Result<([f64; 6], Option<String>), String> {
     let blank = pose.text.as_ref().is_none_or(|text| text.text.trim().is_empty());
     let mut values = if blank { [0.0; 6] } else { pose.content::<6>()? };
     if pose.attribute("degrees").is_some_and(|degrees| degrees == "true" || degrees == "1") {
         for angle in &mut values[3..] {
             *angle = angle.to_radians();
         }
+        return Ok((values, None));
     }
-    Ok(values)
+    Ok((values, beyond_a_turn(&values[3..])))
 }

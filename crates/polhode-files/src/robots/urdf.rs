@@ -3,8 +3,8 @@
 use nalgebra::Matrix3;
 
 use super::element::Element;
-use super::pose::{quarter_turns_exact, roll_pitch_yaw};
-use super::{Given, is_massless, link, positive, writing};
+use super::pose::{beyond_a_turn, quarter_turns_exact, roll_pitch_yaw};
+use super::{Given, is_massless, link, positive, remarks, unstated, writing};
 
 /// Elements of xacro that make nothing by themselves.
 const DEFINITIONS: [&str; 3] = ["property", "arg", "macro"];
@@ -22,13 +22,21 @@ pub(super) fn links(document: &Element) -> Vec<Given> {
         let defect = element.error("xacro is not expanded; name the URDF file that xacro writes");
         link(&format!("{}{file}", element.tag), element, Err(defect))
     });
-    if links.is_empty() {
+    let is_capital = |element: &&&Element| element.tag != "link" && element.tag.eq_ignore_ascii_case("link");
+    let capital: Vec<&&Element> = all.iter().filter(is_capital).collect();
+    let refused = capital.iter().map(|element| {
+        let defect = element.error("names of elements have small letters; write <link>");
+        link(element.attribute("name").unwrap_or_default(), element, Err(defect))
+    });
+    let unread = unread.chain(refused);
+    if links.is_empty() && capital.is_empty() {
         let fragments = all.iter().filter(|element| element.tag == "inertial");
         return fragments.map(|inertial| link("", inertial, stated(inertial))).chain(unread).collect();
     }
     let each = |element: &&&Element| {
         let name = element.attribute("name").unwrap_or_default();
-        let stated = element.single("inertial").and_then(|inertial| inertial.map_or(Ok(None), stated));
+        let own = element.single("inertial");
+        let stated = own.and_then(|inertial| inertial.map_or_else(|| unstated(element), stated));
         link(name, element, stated)
     };
     links.iter().map(each).chain(unread).collect()
@@ -43,7 +51,10 @@ fn is_link(element: &Element) -> bool {
 /// What `<inertial>` states; a mass of zero with a tensor of zeros is none.
 fn stated(inertial: &Element) -> Result<Option<Given>, String> {
     let (xyz, rpy) = match inertial.single("origin")? {
-        Some(origin) => (origin.optional::<3>("xyz")?, origin.optional::<3>("rpy")?),
+        Some(origin) => {
+            origin.only(&["xyz", "rpy"])?;
+            (origin.optional::<3>("xyz")?, origin.optional::<3>("rpy")?)
+        }
         None => (None, None),
     };
     let mass = inertial.single("mass")?.ok_or_else(|| inertial.error("<mass> is missing"))?;
@@ -64,6 +75,10 @@ fn stated(inertial: &Element) -> Result<Option<Given>, String> {
         mass: Some(positive(value).map_err(|error| mass.error(&error))?),
         center_of_mass: xyz.unwrap_or_default().into(),
         turn: quarter_turns_exact(roll_pitch_yaw(rpy.unwrap_or_default())),
+        remark: remarks(
+            beyond_a_turn(&rpy.unwrap_or_default()),
+            inertial.unread(&["origin", "mass", "inertia"]),
+        ),
         writing: Some(writing(inertia, names.map(|name| inertia.value(name)))),
         ..Given::of_tensor(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz))
     }))

@@ -15,12 +15,15 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::inertia::MassProperties;
 
 use super::element::Element;
-use super::pose::{Pose, euler, quarter_turns_exact};
+use super::pose::{Pose, beyond_a_turn, euler, quarter_turns_exact};
 use super::{Given, is_massless, link, positive, writing};
 use compiler::{Compiler, Source};
 use defaults::Defaults;
 use mesh::Meshes;
 use orientation::ATTRIBUTES;
+
+/// The attributes of a tensor.
+const TENSORS: [&str; 2] = ["diaginertia", "fullinertia"];
 
 /// Elements of bodies that one model may have, copies of `<replicate>` among them: copies of copies grow without bound.
 const MOST_ELEMENTS: usize = 1_000_000;
@@ -123,11 +126,14 @@ impl<'e> Model<'e> {
         let mut geoms = Some(Geoms::default());
         self.walk(element, Pose::identity(), class, suffix, &mut geoms);
         let own = element.single("inertial");
-        let stated = match own {
-            Err(error) => Err(error),
-            Ok(Some(inertial)) if self.compiler.source != Source::Geoms => self.stated(inertial),
-            Ok(_) if self.compiler.source == Source::Inertial => Ok(None),
-            Ok(own) => match self.of_geoms(&geoms.unwrap_or_default()) {
+        let has_tensor = |part: &&Element| TENSORS.iter().any(|name| part.attribute(name).is_some());
+        let other = element.children.iter().filter(|part| part.tag != "inertial").find(has_tensor);
+        let stated = match (own, other) {
+            (Err(error), _) => Err(error),
+            (_, Some(other)) => Err(other.error("states a tensor, which is read of <inertial> alone")),
+            (Ok(Some(inertial)), _) if self.compiler.source != Source::Geoms => self.stated(inertial),
+            (Ok(_), _) if self.compiler.source == Source::Inertial => Ok(None),
+            (Ok(own), _) => match self.of_geoms(&geoms.unwrap_or_default()) {
                 // without geoms of mass there is nothing to infer from
                 Ok(None) => own.map_or(Ok(None), |inertial| self.stated(inertial)),
                 other => other,
@@ -158,6 +164,7 @@ impl<'e> Model<'e> {
 
     /// What `<inertial>` states.
     fn stated(&self, inertial: &Element) -> Result<Option<Given>, String> {
+        inertial.only(&[&ATTRIBUTES[..], &TENSORS[..], &["pos", "mass"][..]].concat())?;
         let [mass] = inertial.needed::<1>("mass")?;
         let full = inertial.optional::<6>("fullinertia")?;
         let diagonal = inertial.optional::<3>("diaginertia")?;
@@ -186,6 +193,7 @@ impl<'e> Model<'e> {
             mass: Some(positive(mass).map_err(|error| inertial.error(&error))?),
             center_of_mass: pose.at,
             turn: pose.turn,
+            remark: self.beyond_a_turn(inertial)?,
             writing: Some(super::Writing {
                 list: inertial.value(attribute).map(|value| value.range.clone()),
                 ..writing(inertial, [None; 6])
@@ -193,6 +201,14 @@ impl<'e> Model<'e> {
             diagonal: diagonal.is_some(),
             ..Given::of_tensor(Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz))
         }))
+    }
+
+    /// What is to be known of angles in radians.
+    fn beyond_a_turn(&self, inertial: &Element) -> Result<Option<String>, String> {
+        let [a, b, c] = inertial.optional::<3>("euler")?.unwrap_or_default();
+        let [_, _, _, d] = inertial.optional::<4>("axisangle")?.unwrap_or_default();
+        let in_radians = self.compiler.angle == 1.0;
+        Ok(if in_radians { beyond_a_turn(&[a, b, c, d]) } else { None })
     }
 
     /// Copies, each moved and turned once more than the one before.
