@@ -6,6 +6,7 @@ use std::path::Path;
 
 use crate::error::Error;
 use crate::inputs;
+use crate::text::foreign;
 
 /// A line of a text file is no longer than this many bytes; whole models stand in one.
 const LONGEST_LINE: usize = 1 << 24;
@@ -46,5 +47,8 @@ fn text(path: &Path, open: fn(&Path) -> io::Result<File>, remedy: &str) -> Resul
         }
     };
     let bytes = lines().map_err(|reason: io::Error| refused(&reason))?;
-    String::from_utf8(bytes).map_err(|_| refused(&"stream did not contain valid UTF-8"))
+    String::from_utf8(bytes).map_err(|error| match foreign(error.as_bytes()) {
+        Some((says, how)) => Error::Input(format!("{}: {says}; {how}", path.display())),
+        None => refused(&"stream did not contain valid UTF-8"),
+    })
 }

@@ -39,6 +39,19 @@ fn escaped(text: &str, which: impl Fn(char) -> bool, how: impl Fn(char) -> Strin
     text.chars().map(each).collect::<String>().into()
 }
 
+/// What a file is that has another coding than text of bytes, by the mark at its beginning, and what helps.
+pub(crate) fn foreign(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
+    match bytes {
+        // the mark of byte order in two bytes
+        [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => Some(("the text is UTF-16", "save it as UTF-8")),
+        [0x1f, 0x8b, ..] => Some(("the file is compressed by gzip", "unpack it first")),
+        [b'P', b'K', 3, 4, ..] => {
+            Some(("the file is a zip archive, as a workbook is", "unpack it, or save its rows as CSV"))
+        }
+        _ => None,
+    }
+}
+
 /// A number with all its digits, written out where that is short.
 pub fn short(x: f64) -> String {
     Shown(x).to_string()

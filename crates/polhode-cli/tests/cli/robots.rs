@@ -490,6 +490,19 @@ fn reversed(obj: &str) -> String {
     obj.lines().map(|line| turn(line) + "\n").collect()
 }
 
+/// A model in another coding is refused by the name of that.
+#[test]
+fn a_model_that_is_compressed_is_said_to_be_so() {
+    let scratch = Scratch::new("robots-coding");
+    for (mark, says) in
+        [(&b"\x1f\x8b\x08"[..], "compressed by gzip"), (&b"\xff\xfe<\0"[..], "the text is UTF-16")]
+    {
+        let path = scratch.file("model.urdf", mark);
+        let answer = run(&format!("inertia urdf {path}"));
+        assert!(answer.code == 2 && answer.err.contains(says), "{answer:?}");
+    }
+}
+
 #[test]
 fn models_nested_without_end_are_refused_with_line_and_depth() {
     let scratch = Scratch::new("robots-nested");

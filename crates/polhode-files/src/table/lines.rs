@@ -7,7 +7,7 @@ use super::array::{ArrayText, MAGIC};
 use super::cells::uncommented;
 use crate::error::{Rule, TableError};
 use crate::inputs;
-use crate::text::visible;
+use crate::text::{foreign, visible};
 
 /// A line is no longer than this many bytes.
 const LONGEST_LINE: usize = 1 << 24;
@@ -110,8 +110,8 @@ impl<'t> Lines<'t> {
             }
         }
         self.number += 1;
-        if self.number == 1 {
-            self.check_coding()?;
+        if let Some((says, remedy)) = foreign(&self.bytes).filter(|_| self.number == 1) {
+            return Err(self.refused(Rule::Other(says.into())).with_remedy(remedy));
         }
         let start = if self.bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         self.text.clear();
@@ -120,18 +120,6 @@ impl<'t> Lines<'t> {
             Err(_) => return Err(self.refused(Rule::Utf8)),
         }
         Ok(true)
-    }
-
-    /// Refuses what is no text of bytes by the mark at its beginning.
-    fn check_coding(&self) -> Result<(), TableError> {
-        let (says, remedy) = match self.bytes[..] {
-            // the mark of byte order in two bytes
-            [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => ("the text is UTF-16", "save it as UTF-8"),
-            [0x1f, 0x8b, ..] => ("the file is compressed by gzip", "unpack it first"),
-            [b'P', b'K', 3, 4, ..] => ("the file is a zip archive, as a workbook is", "save its rows as CSV"),
-            _ => return Ok(()),
-        };
-        Err(self.refused(Rule::Other(says.into())).with_remedy(remedy))
     }
 
     /// A rule that the present line breaks.
