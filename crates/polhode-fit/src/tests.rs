@@ -153,6 +153,13 @@ fn warnings_say_their_numbers() {
     );
     says(Warning::RateResiduals { times: 1.43, noise: 0.02 }, &["leaves 1.4 times", "2.00e-2 rad/s"]);
     let halves = Halves { share: 0.25, first: [0.1, 0.4, 0.5], second: [0.2, 0.3, 0.5], chi2: 44.0 };
+    let impossible = Halves { second: [-0.14, 0.47, 0.67], ..halves };
+    says(
+        Warning::Halves(impossible),
+        &["= 0.1000 : 0.4000 : 0.5000, the rest -0.1400", "0.6700 of no body (chi"],
+    );
+    let thin = Halves { second: [-0.02, 0.5, 0.52], ..halves };
+    assert!(!Warning::Halves(thin).to_string().contains("no body"));
     says(Warning::Halves(halves), &["first 25 %", "0.1000 : 0.4000", "rest 0.2000", "44 of 5"]);
     let two = |gain| Warning::TwoTensors { parts: halves, gain };
     says(two(-2.5), &["lower by 2.5", "first 25 %", "0.1000 : 0.4000 : 0.5000", "0.2000 : 0.3000 : 0.5000"]);

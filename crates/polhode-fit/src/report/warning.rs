@@ -5,10 +5,12 @@ use core::fmt;
 use crate::error::{UNSTATED, per_cent, with_sigma};
 use crate::models::reading_error::ReadingError;
 use crate::physical::constraint::ActiveConstraint;
+use crate::physical::law::LARGEST_SHARE;
 use crate::report::next_step::Origin;
 use crate::report::nuisance::FittedTorque;
 use crate::report::parts::{Halves, Scatter};
 use crate::report::torque_free::{Blow, InvariantTrend, Memory, Whiteness};
+use crate::thresholds::flights::BEYOND;
 use crate::thresholds::likelihood::LINEAR;
 use crate::thresholds::warnings::NEGATIVE;
 use crate::units::product::{UnitProduct, alternatives};
@@ -461,8 +463,8 @@ impl fmt::Display for Warning {
                 "the first {:.0} % of the record say I1 : I2 : I3 = {}, the rest {} (chi squared {chi2:.0} of 5): a tensor that changes, as \
                  where something moves in the body, or a torque or error of the sensor that is no part of the fit",
                 100.0 * share,
-                moments(first),
-                moments(second)
+                of_part(first),
+                of_part(second)
             ),
             Self::Scatter(scatter @ Scatter { parts, chi2, dof }) => write!(
                 f,
@@ -565,6 +567,12 @@ fn taken_out(is_fitted: bool) -> &'static str {
     } else {
         "it is no part of the fit, and the tensor may be off by more than its deviations"
     }
+}
+
+/// The moments by a part of a record, which may tell no more than that it is no rotation of a body.
+fn of_part(shares: &[f64; 3]) -> String {
+    let is_of_body = shares[0] > -BEYOND && shares[2] < LARGEST_SHARE + BEYOND;
+    moments(shares) + if is_of_body { "" } else { " of no body" }
 }
 
 /// As shares of the trace.
