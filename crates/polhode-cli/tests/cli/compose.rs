@@ -104,6 +104,15 @@ fn a_link_of_a_model_is_named_behind_a_colon() {
     let text = output(&format!("propagate --body {robot}:upper {start}"));
     let energy: f64 = text.lines().nth(1).unwrap().parse().unwrap();
     assert!((energy - 0.5 * (2.0 * 0.09 + 1.0 + 2.5 * 0.16)).abs() < 1e-12, "{text}");
+    // what its link remarks on it is told
+    let degrees =
+        format!("<robot name='r'>{}</robot>", link("upper", 1.0).replace("1.5707963267948966", "90"));
+    let degrees = scratch.file("degrees.urdf", degrees);
+    let told = run(&format!("propagate --body {degrees} {start}"));
+    assert!(
+        told.code == 0 && told.err.contains("of 'upper': its axes turn by an angle of 90 rad"),
+        "{told:?}"
+    );
     refused(&format!("propagate --body {robot} {start}"), &["has 2 bodies: upper, lower", "FILE:NAME"]);
     refused(&format!("propagate --body {robot}:uper {start}"), &["'uper': no such link", "'upper'"]);
     // a name that several have names none of them

@@ -165,8 +165,9 @@ fn links(path: &Path, kind: &str, meant: Option<&str>) -> Result<Vec<Named>, Err
     }
     // a frame without a body, and a link that states no tensor, have none to give
     let bodies = links.iter().filter(|link| !link.massless && link.defect.is_none());
+    let remarks = |body: &Given| -> Vec<String> { body.remark.clone().into_iter().collect() };
     let bodies: Vec<Named> =
-        bodies.map(|body| (body.name.clone(), tensor(body), Vec::new(), Vec::new())).collect();
+        bodies.map(|body| (body.name.clone(), tensor(body), Vec::new(), remarks(body))).collect();
     let is_in_question = |link: &&Given| meant.map_or(bodies.len() == 1, |name| link.name == name);
     let defect = links.iter().filter(is_in_question).find_map(|link| link.defect.as_ref());
     match (defect, meant) {
