@@ -124,6 +124,9 @@ fn told_by_motion(
     as_read: Result<Free, FitError>,
 ) -> Result<Estimate, FitError> {
     let inverse = Free::new(&poses.inverse(), settings);
+    let is_free = |poses: &Poses| {
+        Free::new(&poses.without_rates(), settings).is_ok_and(|free| free.is_explained(settings))
+    };
     match (as_read, inverse) {
         (Ok(free), Ok(other)) => {
             let gain = gain(&free, &other);
@@ -135,10 +138,14 @@ fn told_by_motion(
             let told = Told { is_inverse, gain: Some(gain.abs()) };
             finished(poses, settings, if is_inverse { &other } else { &free }, told)
         }
-        // rates that turn the other way are a cause where the other direction has none
+        // rates that turn the other way are the cause where the attitudes alone move freely
+        (Err(error @ FitError::Poses(PoseFault::Mirrored)), Ok(other))
+            if !other.is_explained(settings) && is_free(poses) =>
+        {
+            Err(error)
+        }
         (Ok(free), Err(error @ FitError::Poses(PoseFault::Mirrored)))
-        | (Err(error @ FitError::Poses(PoseFault::Mirrored)), Ok(free))
-            if !free.is_explained(settings) =>
+            if !free.is_explained(settings) && is_free(&poses.inverse()) =>
         {
             Err(error)
         }
