@@ -24,17 +24,16 @@ pub(crate) fn check_axes(record: &Record) -> Result<(), FitError> {
             continue;
         }
         let Some(noise) = noise_beyond_steps(s, held) else { continue };
-        let from = s.times().first().copied().unwrap_or(0.0);
+        let (samples, from) = (rates.len(), s.times().first().copied().unwrap_or(0.0));
         let place = format!("segment {} ({}, from {from} s)", k + 1, s.source());
         let name = |axis: usize| ['x', 'y', 'z'][axis];
-        let samples = rates.len();
-        return Err(match (held, pair) {
-            (Some(axis), _) => {
-                FitError::HeldAxis { place, axis: name(axis), value: rates[0][axis], samples, noise }
-            }
-            (None, Some((a, b))) => FitError::SameAxes { place, axes: [name(a), name(b)], samples, noise },
-            (None, None) => continue,
-        });
+        if let Some(axis) = held {
+            let (value, axis) = (rates[0][axis], name(axis));
+            return Err(FitError::HeldAxis { place, axis, value, samples, noise });
+        }
+        if let Some((a, b)) = pair {
+            return Err(FitError::SameAxes { place, axes: [name(a), name(b)], samples, noise });
+        }
     }
     Ok(())
 }
