@@ -125,14 +125,15 @@ impl TumblingArguments {
         self.periods.is_some()
     }
 
-    /// The angles of all flags, as they were typed.
+    /// The angles of all flags, as they were typed; a pole whose latitude will be refused has none.
     pub(crate) fn angles(&self) -> impl Iterator<Item = &f64> {
-        self.pole.iter().flatten().chain(self.phases.iter().flatten())
+        let pole = self.pole.iter().filter(|pole| latitude(**pole, 1.0).is_ok());
+        pole.flatten().chain(self.phases.iter().flatten())
     }
 
     /// Whether a flag has angles.
     pub(crate) fn has_angles(&self) -> bool {
-        self.angles().next().is_some()
+        self.pole.is_some() || self.phases.is_some()
     }
 
     /// The elements that the flags state, if they do.
