@@ -77,7 +77,9 @@ mod tests {
             change(base + Vector3::new(x, y, z) * (noise * core::f64::consts::SQRT_2))
         };
         let segment = Segment::new("a.csv", times, (0..count).map(one).collect()).unwrap();
-        check_axes(&Record { segments: vec![segment], ..Record::default() })
+        let mut record = Record::default();
+        record.segments.push(segment);
+        check_axes(&record)
     }
 
     /// An axis that is held reads nothing where the others have noise, and neither does one that reads what another one reads.
