@@ -1,7 +1,6 @@
 //! The report on a likelihood on the exact motion.
 
-use nalgebra::{DMatrix, DVector, Matrix3, SMatrix, Vector3};
-use polhode::inertia::Inertia;
+use nalgebra::{Matrix3, Vector3};
 use polhode::rotation::Quat;
 
 use crate::columns::sets::torque_columns;
@@ -17,46 +16,25 @@ use crate::physical::coordinates::{Coordinates, Form, eigen, entries_of_coordina
 use crate::physical::face::Nearest;
 use crate::physical::failure::SolverFailure;
 use crate::physical::law::LARGEST_SHARE;
-use crate::physical::nearest::{Normal, nearest};
-use crate::physical::prior::Prior;
+use crate::physical::nearest::nearest;
 use crate::poses::fault::PoseFault;
 use crate::poses::free::Free;
 use crate::report::answer::{Answer, of_entries, ratios, shape_of, sigmas};
 use crate::report::attitudes::{AlignmentFit, AttitudeFit};
 use crate::report::deviations::{Deviations, deviations};
 use crate::report::estimate::{Estimate, Method, Residuals};
-use crate::report::identifiability::Identifiability;
+use crate::report::likelihood::{Of, Told, absolute, identify, joined};
 use crate::report::mirror::{mirror_sigmas, mirrored};
 use crate::report::model::models;
-use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, WithoutSegment};
-use crate::report::scale::{Noise, Scale, by_prior, check_constant, check_same, scale_of};
+use crate::report::nuisance::{FittedTorque, Nuisance, SegmentSummary, WithoutSegment};
+use crate::report::scale::{Noise, Scale, scale_of};
 use crate::report::torque_free::{InvariantTrend, Whiteness};
 use crate::report::warnings::{Doubts, of_likelihood, of_rates};
 use crate::settings::Settings;
 use crate::settings::known::Known;
 use crate::settings::torque::TorqueModel;
 use crate::signal::stretch::Stretch;
-use crate::thresholds::bound::OPEN;
 use crate::thresholds::likelihood::{NARROW, PARTED};
-use crate::verdict::prior::{check_agreement, consistent};
-
-/// Of which stretches a size is asked.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Of {
-    /// All: the size of the answer.
-    All,
-    /// Those of one segment, which is compared with others.
-    Segment,
-}
-
-/// How the direction of attitudes was told.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Told {
-    /// Whether it is the other one than that in which they were read.
-    pub(crate) is_inverse: bool,
-    /// Log-likelihood of it less that of the other, where both were tried.
-    pub(crate) gain: Option<f64>,
-}
 
 /// What the samples say at one level of noise.
 struct Information {
@@ -82,30 +60,10 @@ pub(crate) fn report(
     let x = free.followed.model.x + information.moved;
     let identifiability =
         identify(&rates, &free.followed.model.x, &free.steady.unwrap_or(information.tensor));
-    let prior = settings.prior.as_ref().map(|prior| consistent(prior, settings)).transpose()?;
-    if !identifiability.complete() {
-        return Err(FitError::Unidentifiable(Box::new(identifiability)));
-    }
-    if !free.followed.is_still {
-        return Err(PoseFault::Unsettled.into());
-    }
-    let singular = || FitError::Solver(SolverFailure::Information);
-    let root = information.tensor.cholesky().ok_or_else(singular)?.l().transpose();
-    let own = Normal {
-        centre: DVector::from_column_slice(x.as_slice()),
-        root: DMatrix::from_column_slice(5, 5, root.as_slice()),
-    };
-    let (joined, agreed) = match &prior {
-        None => (own, None),
-        Some(prior) => {
-            let (joined, chi2, dof) = prior.join(&own, None).ok_or_else(singular)?;
-            let agreed = Agreement { chi2, dof };
-            check_agreement(prior, agreed, &x)?;
-            (joined, Some(agreed))
-        }
-    };
+    let (joined, agreed) =
+        joined(settings, &identifiability, free.followed.is_still, &x, &information.tensor)?;
     let answer = nearest(&joined, &settings.limits, &[])?;
-    if prior.is_none() && !holds_at(free, &answer) {
+    if agreed.is_none() && !holds_at(free, &answer) {
         return Err(PoseFault::Unsettled.into());
     }
     let Deviations { free: factor, on_face, .. } = deviations(&joined, &[], &settings.limits, &[], &answer)?;
@@ -143,7 +101,7 @@ pub(crate) fn report(
         covariance: of_entries(&on_face),
         free_covariance: of_entries(&factor),
         bound: bound.map(|bound| entries * bound * entries.transpose()),
-        bound_ratio: widened.filter(|_| prior.is_none()),
+        bound_ratio: widened.filter(|_| agreed.is_none()),
         inertia,
         inertia_covariance,
         quanta: [0.0; 3],
@@ -280,23 +238,6 @@ fn holds_at(free: &Free, answer: &Nearest) -> bool {
     found.is_some_and(|found| (found - foreseen).abs() <= PARTED.max(0.5 * found.max(foreseen)))
 }
 
-/// Which of the five numbers the information determines.
-pub(super) fn identify(stretches: &[Stretch], x: &Coordinates, information: &Form) -> Identifiability {
-    let (values, directions) = eigen(*information);
-    let most = values[4];
-    // ascending values, and what is rounding tells nothing
-    let singular = Coordinates::from_fn(|k, _| {
-        let value = values[4 - k];
-        if value > OPEN * most { value.sqrt() } else { 0.0 }
-    });
-    let descending = Form::from_fn(|i, k| directions[(i, 4 - k)]);
-    let mut scatter = Matrix3::zeros();
-    for stretch in stretches {
-        stretch.rates.iter().for_each(|w| scatter += w * w.transpose());
-    }
-    Identifiability::new(&(singular, descending), &scatter, &tensor(x))
-}
-
 /// The rates of the motion at the samples, axes of the tensor, in units of the fit.
 fn fitted_rates(free: &Free) -> Vec<Stretch> {
     let model = &free.followed.model;
@@ -327,28 +268,6 @@ pub(super) fn size(
     };
     let variance = rate * rate + 12.0 * slope * slope;
     scale_of(known, path, unit, j, Noise { variance, is_in_rates: false })
-}
-
-/// The absolute tensor by the rates of a fitted motion, where something gives its size, and its covariance; `torque` was fitted. `scale` is the
-/// size by the stretches of the motion, of all of them or of those of one segment.
-pub(super) fn absolute(
-    settings: &Settings,
-    rates: &[Stretch],
-    torque: TorqueModel,
-    j: &Matrix3<f64>,
-    covariance: &Form,
-    x: &Coordinates,
-    scale: impl Fn(Known, &[Stretch], Of) -> Scale,
-) -> Result<(Option<Inertia>, Option<SMatrix<f64, 6, 6>>), FitError> {
-    let prior = settings.prior.as_ref().map(Prior::told).transpose()?.filter(|prior| prior.sized);
-    let Some(known) = settings.known else {
-        return prior.map_or(Ok((None, None)), |prior| by_prior(j, &prior, covariance, x));
-    };
-    check_constant(known, &torque_columns(torque))?;
-    check_same(known, rates, covariance, 1.0, |segment, _| scale(known, segment, Of::Segment))?;
-    let scale = scale(known, rates, Of::All);
-    let (inertia, covariance) = scale.sized(known, prior.as_ref(), j, covariance, 1.0, None)?;
-    Ok((Some(inertia), Some(covariance)))
 }
 
 /// Residuals of attitudes, or of rates where there are no attitudes, in standard deviations.

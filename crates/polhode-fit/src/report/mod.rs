@@ -9,6 +9,7 @@ pub(crate) mod estimate;
 pub(crate) mod exact;
 pub(crate) mod facts;
 pub(crate) mod identifiability;
+pub(crate) mod likelihood;
 pub(crate) mod mirror;
 pub(crate) mod model;
 pub(crate) mod motion;

@@ -1,6 +1,6 @@
 //! The report on attitudes of a body on which torques act.
 
-use nalgebra::{DMatrix, DVector, Matrix3};
+use nalgebra::Matrix3;
 
 use crate::columns::sets::torque_columns;
 use crate::error::FitError;
@@ -8,16 +8,15 @@ use crate::models::weighed::spread;
 use crate::physical::coordinates::{Form, eigen, tensor};
 use crate::physical::failure::SolverFailure;
 use crate::physical::law::LARGEST_SHARE;
-use crate::physical::nearest::{Normal, nearest};
-use crate::poses::fault::PoseFault;
+use crate::physical::nearest::nearest;
 use crate::poses::free::Read;
 use crate::report::answer::{Answer, of_entries, ratios, sigmas};
 use crate::report::attitudes::AttitudeFit;
 use crate::report::deviations::{Deviations, deviations};
 use crate::report::estimate::{Estimate, Method, Residuals};
-use crate::report::exact::{Of, Told, absolute, identify};
+use crate::report::likelihood::{Of, Told, absolute, identify, joined};
 use crate::report::model::models;
-use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, WithoutSegment};
+use crate::report::nuisance::{FittedTorque, Nuisance, SegmentSummary, WithoutSegment};
 use crate::report::scale::{Noise, Scale, scale_of};
 use crate::report::torque_free::Whiteness;
 use crate::report::warnings::of_smoothed;
@@ -27,7 +26,6 @@ use crate::settings::torque::TorqueModel;
 use crate::signal::covariance::{acceleration_density, torque_shape};
 use crate::signal::stretch::Stretch;
 use crate::smoothed::choice::Chosen;
-use crate::verdict::prior::{check_agreement, consistent};
 
 /// Everything that can be said of the answer; `read` is what was known of the attitudes before.
 pub(crate) fn report(
@@ -61,27 +59,7 @@ pub(crate) fn report(
         })
         .collect();
     let identifiability = identify(&rates, &found.at.x, &information);
-    let prior = settings.prior.as_ref().map(|prior| consistent(prior, settings)).transpose()?;
-    if !identifiability.complete() {
-        return Err(FitError::Unidentifiable(Box::new(identifiability)));
-    }
-    if !found.is_still {
-        return Err(PoseFault::Unsettled.into());
-    }
-    let root = information.cholesky().ok_or_else(singular)?.l().transpose();
-    let own = Normal {
-        centre: DVector::from_column_slice(found.at.x.as_slice()),
-        root: DMatrix::from_column_slice(5, 5, root.as_slice()),
-    };
-    let (joined, agreed) = match &prior {
-        None => (own, None),
-        Some(prior) => {
-            let (joined, chi2, dof) = prior.join(&own, None).ok_or_else(singular)?;
-            let agreed = Agreement { chi2, dof };
-            check_agreement(prior, agreed, &found.at.x)?;
-            (joined, Some(agreed))
-        }
-    };
+    let (joined, agreed) = joined(settings, &identifiability, found.is_still, &found.at.x, &information)?;
     let answer = nearest(&joined, &settings.limits, &[])?;
     let Deviations { free: factor, on_face, .. } = deviations(&joined, &[], &settings.limits, &[], &answer)?;
     let Answer { shape, moments, axes, v } = Answer::new(&answer.x)?;
