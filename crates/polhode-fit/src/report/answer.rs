@@ -38,7 +38,13 @@ pub(crate) fn ratios(factor: &Form, v: &[Vector3<f64>; 3], moments: &Vector3<f64
     })
 }
 
-/// The same of any tensor, also one that no body has; `covariance` is that of its coordinates.
+/// I₁/I₃ and I₂/I₃ of any tensor, also one that no body has.
+pub(crate) fn ratios_at(x: &Coordinates) -> [f64; 2] {
+    let (moments, _) = eigen(tensor(x));
+    [moments[0] / moments[2], moments[1] / moments[2]]
+}
+
+/// The same with their standard deviations; `covariance` is that of its coordinates.
 pub(crate) fn ratios_of(x: &Coordinates, covariance: &Form) -> [(f64, f64); 2] {
     let (moments, axes) = eigen(tensor(x));
     ratios(&factor(covariance), &[0, 1, 2].map(|k| axes.column(k).into_owned()), &moments)

@@ -68,6 +68,14 @@ pub struct Residuals {
     pub mean_square: f64,
 }
 
+impl Residuals {
+    pub(crate) fn new(segment: usize, times: Vec<f64>, values: Vec<[f64; 3]>) -> Self {
+        let squares: f64 = values.iter().flatten().map(|v| v * v).sum();
+        let mean_square = squares / (3 * values.len()).max(1) as f64;
+        Residuals { segment, times, values, mean_square }
+    }
+}
+
 /// A fitted tensor and how far to trust it.
 ///
 /// ```

@@ -12,14 +12,14 @@ use crate::likelihood::profile::fall;
 use crate::likelihood::sums::{Reduced, Sums};
 use crate::likelihood::track::{COMMON, Kind, Track};
 use crate::models::weighed::spread;
-use crate::physical::coordinates::{Coordinates, Form, eigen, entries_of_coordinates, tensor};
+use crate::physical::coordinates::{Coordinates, Form, entries_of_coordinates};
 use crate::physical::face::Nearest;
 use crate::physical::failure::SolverFailure;
 use crate::physical::law::LARGEST_SHARE;
 use crate::physical::nearest::nearest;
 use crate::poses::fault::PoseFault;
 use crate::poses::free::Free;
-use crate::report::answer::{Answer, of_entries, ratios, shape_of, sigmas};
+use crate::report::answer::{Answer, of_entries, ratios, ratios_at, shape_of, sigmas};
 use crate::report::attitudes::{AlignmentFit, AttitudeFit};
 use crate::report::deviations::{Deviations, deviations};
 use crate::report::estimate::{Estimate, Method, Residuals};
@@ -28,6 +28,7 @@ use crate::report::mirror::{mirror_sigmas, mirrored};
 use crate::report::model::models;
 use crate::report::nuisance::{FittedTorque, Nuisance, SegmentSummary, WithoutSegment};
 use crate::report::scale::{Noise, Scale, scale_of};
+use crate::report::segments::to_shares;
 use crate::report::torque_free::{InvariantTrend, Whiteness};
 use crate::report::warnings::{Doubts, of_likelihood, of_rates};
 use crate::settings::Settings;
@@ -163,10 +164,7 @@ fn model_of(torque: Acting) -> TorqueModel {
 /// The torque that was reckoned with.
 fn torque(free: &Free, coefficients: Vec<Nuisance>, is_chosen: bool) -> FittedTorque {
     let model = model_of(free.torque);
-    let ratios_without = free.without.map(|x| {
-        let (moments, _) = eigen(tensor(&x));
-        [moments[0] / moments[2], moments[1] / moments[2]]
-    });
+    let ratios_without = free.without.as_ref().map(ratios_at);
     FittedTorque { model, is_chosen, coefficients, gain: free.gain, ratios_without }
 }
 
@@ -284,9 +282,7 @@ fn residuals(free: &Free, levels: Levels) -> Result<Vec<Residuals>, FitError> {
             }
         });
         seen.ok_or(FitError::Solver(SolverFailure::Information))?;
-        let squares: f64 = values.iter().flatten().map(|v: &f64| v * v).sum();
-        let mean_square = squares / (3 * values.len().max(1)) as f64;
-        Ok(Residuals { segment, times, values, mean_square })
+        Ok(Residuals::new(segment, times, values))
     })
     .collect()
 }
@@ -320,10 +316,7 @@ fn summaries(free: &Free, information: &Information) -> Vec<SegmentSummary> {
         }
     });
     let mut each: Vec<SegmentSummary> = each.collect();
-    let sum: f64 = each.iter().map(|s| s.weight).sum();
-    if sum > 0.0 {
-        each.iter_mut().for_each(|s| s.weight /= sum);
-    }
+    to_shares(each.iter_mut().map(|s| &mut s.weight).collect());
     each
 }
 

@@ -11,14 +11,14 @@ use crate::columns::effect::Class;
 use crate::error::FitError;
 use crate::models::equations::Equations;
 use crate::physical::constraint::{ActiveConstraint, Constraint};
-use crate::physical::coordinates::{ENTRIES, Form, eigen, entries_of_coordinates, tensor};
+use crate::physical::coordinates::{ENTRIES, Form, entries_of_coordinates};
 use crate::physical::dissipation::Dissipation;
 use crate::physical::face::Nearest;
 use crate::physical::failure::SolverFailure;
 use crate::physical::law::LARGEST_SHARE;
 use crate::physical::nearest::Normal;
 use crate::physical::prior::Prior;
-use crate::report::answer::{Answer, of_entries, ratios, shape_of, sigmas};
+use crate::report::answer::{Answer, of_entries, ratios, ratios_at, shape_of, sigmas};
 use crate::report::deviations::{Deviations, deviations};
 use crate::report::differing::Differing;
 use crate::report::estimate::{Estimate, Method, Residuals};
@@ -322,10 +322,7 @@ impl Facts<'_> {
             .into_iter()
             .filter(|n| n.column.class() != Class::Input)
             .partition(|n| n.column.class().is_torque());
-        let ratios_without = self.chosen.without.map(|x| {
-            let (moments, _) = eigen(tensor(&x));
-            [moments[0] / moments[2], moments[1] / moments[2]]
-        });
+        let ratios_without = self.chosen.without.as_ref().map(ratios_at);
         let torque = FittedTorque {
             model: self.chosen.model,
             is_chosen: self.settings.torque == TorqueModel::Auto,
@@ -342,14 +339,9 @@ impl Facts<'_> {
         each.map(|part| {
             let Stretch { segment, start, .. } = self.stretches[part.stretch];
             let e = part.residuals(at);
-            let values: Vec<[f64; 3]> =
-                e.chunks_exact(3).map(|r| [r[0], r[1], r[2]].map(|v| v / deviation)).collect();
-            Residuals {
-                segment,
-                times: part.centres().iter().map(|c| start + c / self.rms).collect(),
-                mean_square: values.iter().flatten().map(|v| v * v).sum::<f64>() / e.len() as f64,
-                values,
-            }
+            let values = e.chunks_exact(3).map(|r| [r[0], r[1], r[2]].map(|v| v / deviation));
+            let times = part.centres().iter().map(|c| start + c / self.rms).collect();
+            Residuals::new(segment, times, values.collect())
         })
         .collect()
     }
@@ -361,7 +353,7 @@ mod tests {
     use crate::columns::column::Column;
     use crate::columns::drag::Drag;
     use crate::columns::input::Input;
-    use crate::physical::coordinates::{Coordinates, coordinates};
+    use crate::physical::coordinates::{Coordinates, coordinates, eigen, tensor};
     use crate::signal::covariance::Shape;
     use crate::solve::weak_estimate::WeakEstimate;
     use crate::solve::weak_estimate::tests::one_row_each;

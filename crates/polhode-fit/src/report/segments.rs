@@ -72,11 +72,16 @@ pub(crate) fn summaries(weak: &WeakEstimate, stretches: &[Stretch], variance: f6
         Summary { own, levels, others: without() }
     });
     let mut summaries: Vec<Summary> = each.collect();
-    let sum: f64 = summaries.iter().map(|s| s.own.weight).sum();
-    if sum > 0.0 {
-        summaries.iter_mut().for_each(|s| s.own.weight /= sum);
-    }
+    to_shares(summaries.iter_mut().map(|s| &mut s.own.weight).collect());
     summaries
+}
+
+/// Divides weights by their sum, where there is one.
+pub(super) fn to_shares(weights: Vec<&mut f64>) {
+    let sum: f64 = weights.iter().map(|weight| **weight).sum();
+    if sum > 0.0 {
+        weights.into_iter().for_each(|weight| *weight /= sum);
+    }
 }
 
 impl WithoutSegment {

@@ -5,12 +5,12 @@ use nalgebra::Matrix3;
 use crate::columns::sets::torque_columns;
 use crate::error::FitError;
 use crate::models::weighed::spread;
-use crate::physical::coordinates::{Form, eigen, tensor};
+use crate::physical::coordinates::Form;
 use crate::physical::failure::SolverFailure;
 use crate::physical::law::LARGEST_SHARE;
 use crate::physical::nearest::nearest;
 use crate::poses::free::Read;
-use crate::report::answer::{Answer, of_entries, ratios, sigmas};
+use crate::report::answer::{Answer, of_entries, ratios, ratios_at, sigmas};
 use crate::report::attitudes::AttitudeFit;
 use crate::report::deviations::{Deviations, deviations};
 use crate::report::estimate::{Estimate, Method, Residuals};
@@ -18,6 +18,7 @@ use crate::report::likelihood::{Of, Told, absolute, identify, joined};
 use crate::report::model::models;
 use crate::report::nuisance::{FittedTorque, Nuisance, SegmentSummary, WithoutSegment};
 use crate::report::scale::{Noise, Scale, scale_of};
+use crate::report::segments::to_shares;
 use crate::report::torque_free::Whiteness;
 use crate::report::warnings::of_smoothed;
 use crate::settings::Settings;
@@ -78,14 +79,9 @@ pub(crate) fn report(
         .zip(&found.tracks)
         .zip(&read.used)
         .map(|((left, track), &(segment, middle))| {
+            let times = left.iter().map(|(sample, _)| middle + track.times[*sample] / read.unit);
             let values: Vec<[f64; 3]> = left.iter().map(|(_, left)| (*left).into()).collect();
-            let squares: f64 = values.iter().flatten().map(|v| v * v).sum();
-            Residuals {
-                segment,
-                times: left.iter().map(|(sample, _)| middle + track.times[*sample] / read.unit).collect(),
-                mean_square: squares / (3 * values.len()).max(1) as f64,
-                values,
-            }
+            Residuals::new(segment, times.collect(), values)
         })
         .collect();
     let density = torque_noise(chosen, read.unit, &j);
@@ -190,14 +186,13 @@ fn torque(chosen: &Chosen, excess: f64, unit: f64, is_chosen: bool) -> FittedTor
         let sigma = covariance.as_ref().map_or(f64::INFINITY, |c| c[(5 + k, 5 + k)].sqrt());
         Nuisance::new(&column, *value, sigma, unit)
     });
-    let (moments, _) = eigen(tensor(&chosen.without));
     let acts = is_chosen && chosen.model != TorqueModel::None;
     FittedTorque {
         model: chosen.model,
         is_chosen,
         coefficients: coefficients.collect(),
         gain: acts.then_some(chosen.gain),
-        ratios_without: acts.then(|| [moments[0] / moments[2], moments[1] / moments[2]]),
+        ratios_without: acts.then(|| ratios_at(&chosen.without)),
     }
 }
 
@@ -227,10 +222,7 @@ fn summaries(
             }
         });
     let mut each: Vec<SegmentSummary> = each.collect();
-    let sum: f64 = each.iter().map(|s| s.weight).sum();
-    if sum > 0.0 {
-        each.iter_mut().for_each(|s| s.weight /= sum);
-    }
+    to_shares(each.iter_mut().map(|s| &mut s.weight).collect());
     each
 }
 
@@ -243,7 +235,7 @@ mod tests {
     use polhode::rotation::Quat;
 
     use crate::likelihood::track::Track;
-    use crate::physical::coordinates::Coordinates;
+    use crate::physical::coordinates::{Coordinates, tensor};
     use crate::report::parts::quantile;
     use crate::report::warning::Warning;
     use crate::settings::torque::TorqueNoise;
