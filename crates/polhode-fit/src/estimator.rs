@@ -237,24 +237,9 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
     if has_zero_inputs(record) && suspected.as_ref().is_some_and(|found| found.what == ROTOR) {
         return Err(FitError::ZeroInputs(None));
     }
-    let reached = suspected.as_ref().and_then(|found| Some(joint.moved(found.reached.as_ref()?)));
-    let joint = match reached {
-        Some(more) => joint.widened(&more).ok_or_else(information)?,
-        None => joint,
-    };
     let differing = differing(weak, deviation * deviation);
-    let of_choice = joint.of_tensor(&spread);
-    let joint = joint.widened(&of_choice).ok_or_else(information)?;
-    let of_parts = differing.as_ref().map(|differing| differing.of(&joint.kept));
-    let added = of_parts.as_ref().map_or(spread, |more| {
-        let of_tensor = more.rows(joint.kept.len(), 5);
-        let added = of_tensor * of_tensor.transpose();
-        spread + Form::from_fn(|i, k| added[(i, k)])
-    });
-    let joint = match of_parts {
-        Some(more) => joint.widened(&more).ok_or_else(information)?,
-        None => joint,
-    };
+    let widened = widened(joint, suspected.as_ref(), spread, differing.as_ref());
+    let (joint, added) = widened.ok_or_else(information)?;
     let dissipation = dissipation(&weak.columns, &joint.kept);
     let (told, agreed) = match &prior {
         Some(prior) if completed.is_none() => with_prior(&joint, weak, prior, input)?,
@@ -296,6 +281,29 @@ fn fit_to(record: &Record, settings: &Settings, spikes: Vec<Spike>) -> Result<Fi
     let beside = beside(&chosen.weak, &spread, suspected.as_ref(), differing.as_ref());
     let drawn = Drawn { weak: chosen.weak, deviation, beside, rms, input };
     Ok(Fitted { estimate, drawn: Some(drawn) })
+}
+
+/// What is told where the answer may be off by more than noise: by the way to what would explain the record better, by the choice of a torque, and
+/// by how far its parts differ. The last two are what the covariance of the tensor is enlarged by.
+fn widened(
+    joint: Joint,
+    suspected: Option<&Suspect>,
+    spread: Form,
+    differing: Option<&Differing>,
+) -> Option<(Joint, Form)> {
+    let reached = suspected.and_then(|found| Some(joint.moved(found.reached.as_ref()?)));
+    let joint = match reached {
+        Some(more) => joint.widened(&more)?,
+        None => joint,
+    };
+    let of_choice = joint.of_tensor(&spread);
+    let joint = joint.widened(&of_choice)?;
+    let Some(differing) = differing else { return Some((joint, spread)) };
+    let more = differing.of(&joint.kept);
+    let of_tensor = more.rows(joint.kept.len(), 5);
+    let of_parts = of_tensor * of_tensor.transpose();
+    let added = spread + Form::from_fn(|i, k| of_parts[(i, k)]);
+    Some((joint.widened(&more)?, added))
 }
 
 /// By what all columns and the tensor of an estimate may be off beside their noise, side by side, one deviation each: the choice of a torque,
