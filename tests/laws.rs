@@ -33,15 +33,6 @@ const EXACT: f64 = 1e-28;
 /// Moments, momenta and torques of the cases are this many times those of the problems in the literature.
 const SIZE: f64 = 24.0;
 
-const PROBLEMS: [Problem; 6] = [
-    Problem::Free,
-    Problem::Linear,
-    Problem::Potential,
-    Problem::Torque,
-    Problem::Gyrostat,
-    Problem::GyrostatPotential,
-];
-
 fn case(problem: Problem) -> &'static Case {
     cases().unwrap().iter().find(|case| case.problem() == problem).unwrap()
 }
@@ -56,8 +47,8 @@ fn start() -> Point<Dd> {
 
 #[test]
 fn the_cases_are_of_the_kinds_that_they_stand_for() {
-    for (case, problem) in cases().unwrap().iter().zip(PROBLEMS) {
-        assert_eq!(case.problem(), problem);
+    for (case, problem) in cases().unwrap().iter().zip(Problem::ALL) {
+        assert_eq!(case.problem(), *problem);
         assert_ne!(case.body.scale(), 1.0);
     }
 }
@@ -154,7 +145,7 @@ fn name(method: &dyn AnyMethod, problem: Problem) -> String {
 /// Every law of `laws` is decided for every method, each claim holds, and what is not claimed is seen not to hold.
 fn assert_laws(laws: &[Law]) {
     for method in methods() {
-        let report = check_only(&method, &PROBLEMS, laws).unwrap();
+        let report = check_only(&method, Problem::ALL, laws).unwrap();
         assert!(report.findings.iter().all(|finding| finding.verdict == Verdict::Holds), "{report}");
     }
 }
@@ -359,7 +350,7 @@ fn each_method_costs_what_it_claims() {
     assert_eq!(free_claims(&ExactStep).cost, Cost::additions(1));
     assert!(report.findings.iter().all(|finding| finding.verdict == Verdict::Holds), "{report}");
     for method in methods() {
-        let report = check_only(&method, &PROBLEMS, &[Law::Cost]).unwrap();
+        let report = check_only(&method, Problem::ALL, &[Law::Cost]).unwrap();
         assert_eq!(report.false_claims().count(), 0, "{report}");
     }
     assert_cost(&ExplicitEuler, false);

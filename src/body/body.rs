@@ -28,6 +28,18 @@ pub enum Problem {
     Torque,
 }
 
+impl Problem {
+    /// All of them, in the order of reports.
+    pub const ALL: &[Problem] = &[
+        Problem::Free,
+        Problem::Linear,
+        Problem::Potential,
+        Problem::Torque,
+        Problem::Gyrostat,
+        Problem::GyrostatPotential,
+    ];
+}
+
 /// A rigid body, the [wheels](Wheel) that it carries and the [forces](Force) that act on it, if any.
 ///
 /// A user's [`State`] refers to the body axes that the inertia was given in. Kernels work on a [`Point`] in the solver

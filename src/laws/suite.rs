@@ -4,7 +4,7 @@ use core::ops::Range;
 
 use super::case::cases;
 use super::subject::Subject;
-use super::words::{Law, PROBLEMS, Quantity, Verdict};
+use super::words::{Law, Quantity, Verdict};
 use super::{
     Finding, LawsError, Report, conserved, cost, drift, order, poisson, reversibility, rounding, symmetry,
     symplectic, takes, time,
@@ -28,7 +28,7 @@ use crate::run::HalvingError;
 /// ```
 pub fn check(method: &dyn AnyMethod) -> Result<Report, LawsError> {
     let all: Vec<Law> = Law::ALL.iter().copied().filter(|law| *law != Law::Time).collect();
-    check_only(method, &PROBLEMS, &all)
+    check_only(method, Problem::ALL, &all)
 }
 
 /// Some laws of `method`, in some kinds of motion. A motion that the method claims to take and does not is named, whatever the

@@ -150,16 +150,6 @@ words! {
     }
 }
 
-/// The kinds of motion, in the order of reports.
-pub(super) const PROBLEMS: [Problem; 6] = [
-    Problem::Free,
-    Problem::Linear,
-    Problem::Potential,
-    Problem::Torque,
-    Problem::Gyrostat,
-    Problem::GyrostatPotential,
-];
-
 /// The word of a kind of motion.
 pub(super) fn word_of(problem: Problem) -> &'static str {
     match problem {
@@ -174,6 +164,6 @@ pub(super) fn word_of(problem: Problem) -> &'static str {
 
 /// The kind of motion of a word.
 pub(super) fn problem_of(word: &str) -> Result<Problem, UnknownWord> {
-    let found = PROBLEMS.into_iter().find(|problem| word_of(*problem) == word);
+    let found = Problem::ALL.iter().copied().find(|problem| word_of(*problem) == word);
     found.ok_or_else(|| UnknownWord { word: word.into(), what: "kind of motion" })
 }

@@ -165,17 +165,9 @@ fn missing(shard: &Finished, shares: &Shares) -> Result<HashMap<u64, u64>, Error
 
 /// Whether the method of that name keeps |q| = 1.
 fn keeps_norm(name: &str) -> bool {
-    const PROBLEMS: [Problem; 6] = [
-        Problem::Free,
-        Problem::Linear,
-        Problem::Potential,
-        Problem::Torque,
-        Problem::Gyrostat,
-        Problem::GyrostatPotential,
-    ];
     match method(name) {
         Ok(method) => {
-            PROBLEMS.into_iter().filter_map(|problem| method.claims(problem)).all(|claims| claims.kept.norm)
+            Problem::ALL.iter().filter_map(|problem| method.claims(*problem)).all(|claims| claims.kept.norm)
         }
         // the closed form is no method of steps
         Err(_) => true,
