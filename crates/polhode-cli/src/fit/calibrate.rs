@@ -4,11 +4,11 @@ use nalgebra::Vector3;
 use polhode::inertia::Inertia;
 use polhode_files::error::{Error, warn};
 use polhode_fit::{FitError, Record, Settings, WheelCalibration, calibrate_wheel};
-use polhode_pages::table::{Column, Format, Table, row};
+use polhode_pages::table::{Format, Table, row};
 use serde_json::{Value, json};
 
 use super::as_read::AsRead;
-use super::report::{SURE, nuisances, scaled, unit_column, with_error, wrapped_lines};
+use super::report::{SURE, estimates, nuisances, scaled, with_error, wrapped_lines};
 
 /// The answer as text, rows or JSON; `names` are those of the files.
 pub(super) fn report(
@@ -56,13 +56,7 @@ fn text(wheel: &WheelCalibration, axis: &Vector3<f64>, as_read: &AsRead) -> Stri
 }
 
 fn rows(wheel: &WheelCalibration) -> Table {
-    let columns = vec![
-        Column::new("quantity", "", "what"),
-        Column::new("value", "", "estimate"),
-        Column::new("sigma", "", "standard deviation"),
-        unit_column(),
-    ];
-    let mut table = Table::new("wheel", "Inertia of a wheel.", columns);
+    let mut table = estimates("wheel", "Inertia of a wheel.");
     table.push(row!["wheel_inertia", wheel.inertia, wheel.sigma, "kg m^2"]);
     wheel.nuisances.iter().for_each(|n| table.push(row![n.name, n.value, n.sigma, n.unit]));
     table.push(row!["noise_sigma", wheel.noise_sigma, None::<f64>, "rad/s"]);

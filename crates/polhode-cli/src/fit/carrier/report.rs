@@ -2,11 +2,11 @@
 
 use nalgebra::Matrix3;
 use polhode_fit::{CarrierEstimate, MeasuredBody, Nuisance, Size};
-use polhode_pages::table::{Column, Format, Table, row};
+use polhode_pages::table::{Format, Table, row};
 use serde_json::{Map, Value, json};
 
 use crate::fit::as_read::AsRead;
-use crate::fit::report::{ENTRIES, SURE, nuisances, scaled, tensor, unit_column, with_error, wrapped_lines};
+use crate::fit::report::{ENTRIES, SURE, estimates, nuisances, scaled, tensor, with_error, wrapped_lines};
 
 pub(super) fn report(e: &CarrierEstimate, as_read: &AsRead, format: Format) -> String {
     match format {
@@ -91,13 +91,7 @@ fn place(i: usize, k: usize) -> usize {
 }
 
 fn rows(e: &CarrierEstimate) -> Table {
-    let columns = vec![
-        Column::new("quantity", "", "what"),
-        Column::new("value", "", "estimate"),
-        Column::new("sigma", "", "standard deviation"),
-        unit_column(),
-    ];
-    let mut table = Table::new("carrier", "Carrier, proof body and object as one fit.", columns);
+    let mut table = estimates("carrier", "Carrier, proof body and object as one fit.");
     for (name, _, body) in bodies(e) {
         for (entry, i, k) in ENTRIES {
             let sigma = body.covariance[(place(i, k), place(i, k))].sqrt();

@@ -49,9 +49,15 @@ pub(super) fn wrapped_lines(sentences: &[String]) -> Vec<String> {
     sentences.iter().map(|sentence| wrapped(sentence, WIDTH, 2)).collect()
 }
 
-/// The column of units, where rows are of several quantities.
-pub(super) fn unit_column() -> Column {
-    Column::new("unit", "", "unit of value and sigma, empty of ratios and other plain numbers")
+/// A table of estimated quantities, without rows.
+pub(super) fn estimates(name: &str, caption: &str) -> Table {
+    let columns = vec![
+        Column::new("quantity", "", "what"),
+        Column::new("value", "", "estimate"),
+        Column::new("sigma", "", "standard deviation"),
+        Column::new("unit", "", "unit of value and sigma, empty of ratios and other plain numbers"),
+    ];
+    Table::new(name, caption, columns)
 }
 
 /// `x` to four digits.

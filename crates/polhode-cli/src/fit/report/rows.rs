@@ -1,21 +1,15 @@
 //! A fit as rows.
 
 use polhode_fit::Estimate;
-use polhode_pages::table::{Column, Table, row};
+use polhode_pages::table::{Table, row};
 
-use super::{ENTRIES, unit_column};
+use super::{ENTRIES, estimates};
 
 /// The unit of moments of a tensor of trace 1.
 const OF_TRACE: &str = "of the trace";
 
 pub(super) fn rows(e: &Estimate) -> Table {
-    let columns = vec![
-        Column::new("quantity", "", "what"),
-        Column::new("value", "", "estimate"),
-        Column::new("sigma", "", "standard deviation"),
-        unit_column(),
-    ];
-    let mut table = Table::new("fit", "Inertia from measured angular velocity.", columns);
+    let mut table = estimates("fit", "Inertia from measured angular velocity.");
     for k in 0..3 {
         table.push(row![format!("principal_{}", k + 1), e.principal[k], e.sigma_principal[k], OF_TRACE]);
     }
