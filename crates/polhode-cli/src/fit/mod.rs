@@ -8,33 +8,31 @@ mod carrier;
 mod flights;
 mod frames;
 mod inputs;
+mod outputs;
 mod page;
 mod plot;
 mod refusal;
 mod report;
 mod residuals;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use nalgebra::Vector3;
 use polhode_files::error::{Error, warn};
-use polhode_files::inputs as opened;
 use polhode_files::numbers::{numbers, positive};
 use polhode_fit::{Limit, Method, Settings, TorqueModel, fit, fit_poses};
-use polhode_pages::document::Form;
-use polhode_pages::output::Output;
 use polhode_pages::table::Format;
 
 use crate::flags::record::RecordArguments;
 use crate::memory;
-use crate::plot::Picture;
 use arguments::{KnownArguments, PriorArguments, SensorArguments, Torque};
 use as_read::AsRead;
 use attitudes::{Chosen, PoseArguments, Read};
 use carrier::CarrierArguments;
 use flights::Spans;
 use inputs::WheelArguments;
+use outputs::Outputs;
 
 const EXAMPLES: &str = "Examples:
   polhode simulate --body phone --omega 1,9,2 --until 5 --every 0.01 \\
@@ -113,27 +111,11 @@ pub(crate) struct Fit {
     out: Option<PathBuf>,
 }
 
-/// Whether the name of a file has one of these endings, in letters of any size.
-fn ends_in(path: &Path, endings: &[&str]) -> bool {
-    let ending = path.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
-    endings.iter().any(|known| ending.eq_ignore_ascii_case(known))
-}
-
 impl Fit {
     pub(crate) fn run(&self) -> Result<(), Error> {
         self.check_paths()?;
         self.check_wheel()?;
-        let form = self.report.as_deref().map(|path| Form::of("--report", path)).transpose()?;
-        let output = Output::new(self.out.as_deref())?;
-        let residuals = self.residuals.as_deref().map(|path| Output::to_file("--residuals", path));
-        let residuals = residuals.transpose()?;
-        let page = self.report.as_deref().map(|path| Output::to_file("--report", path)).transpose()?;
-        let page = page.zip(form);
-        let figure = self.figure.as_deref().map(|path| {
-            let picture = Picture::of("--figure", path, &[Picture::Svg, Picture::Png])?;
-            Ok::<_, Error>((Output::to_file("--figure", path)?, picture))
-        });
-        let figure = figure.transpose()?;
+        let Outputs { output, page, residuals, figure } = self.outputs()?;
         memory::check_files(&self.files(), 3)?;
         if self.carrier.is_given() {
             let format = Format::of(self.format, self.out.as_deref())?;
@@ -193,29 +175,9 @@ impl Fit {
         let estimate = match fitted {
             Ok(estimate) => estimate,
             Err(error) => {
-                let reason = refusal::reason(&error);
-                let (facts, failed) = refusal::facts(&error);
-                if let Some((file, form)) = page {
-                    file.write_whole(&page::refused(
-                        &reason,
-                        facts.as_ref(),
-                        (&record, &as_read),
-                        &spans,
-                        &self.names(),
-                        form,
-                    )?)?;
-                }
-                if let Some(facts) = facts {
-                    let method = self.method(read.is_some());
-                    output.write_whole(&facts.report(
-                        &record,
-                        &spans,
-                        (&as_read, &reason, method),
-                        format,
-                    ))?;
-                }
-                let message = format!("{}: {reason}", self.names());
-                return Err(if failed { Error::Failed(message) } else { Error::Input(message) });
+                let read_as = (&record, &as_read, &spans);
+                let method = self.method(read.is_some());
+                return Err(self.refused(&error, read_as, (method, format), (output, page))?);
             }
         };
         // as long a computation as the fit itself, for those outputs alone that show it
@@ -250,21 +212,7 @@ impl Fit {
         if let Some((file, text)) = page {
             file.write_whole(&text)?;
         }
-        if let Some((file, path)) = residuals.zip(self.residuals.as_deref()) {
-            let picture = if ends_in(path, &["png"]) { Picture::Png } else { Picture::Svg };
-            match ends_in(path, &["csv"]) {
-                true => {
-                    let turns =
-                        estimate.attitudes.as_ref().map(|a| residuals::turns(&estimate, a.noise_sigma));
-                    file.write_whole(&turns.unwrap_or_else(|| residuals::rows(&record, &motion)).csv())?;
-                }
-                false => crate::plot::write(file, picture, &plot::residuals(&estimate).page())?,
-            }
-        }
-        if let Some((file, picture)) = figure {
-            crate::plot::write(file, picture, &page::figures::overview(&estimate, &motion, &record))?;
-        }
-        Ok(())
+        self.draw((&estimate, &record, motion.as_slice()), residuals, figure)
     }
 
     /// By which method a record without an answer was fitted.
@@ -336,57 +284,6 @@ impl Fit {
         }
         let rule = "the inertia of a wheel is found from a body that is known, or from a joint fit";
         Err(Error::input("--calibrate-wheel", "", rule, "name the body by --body, or give --carrier"))
-    }
-
-    /// No sample is read twice, and no measurement is written over.
-    fn check_paths(&self) -> Result<(), Error> {
-        let same = |a: &Path, b: &Path| {
-            let whole = |path: &Path| path.canonicalize().unwrap_or_else(|_| path.to_path_buf());
-            whole(a) == whole(b)
-        };
-        let files = self.files();
-        for (k, path) in files.iter().enumerate() {
-            if files[..k].iter().any(|before| same(before, path)) {
-                let value = path.display().to_string();
-                return Err(Error::input(
-                    "DATA",
-                    &value,
-                    "the file is given twice",
-                    "give it once, with windows",
-                ));
-            }
-        }
-        let written = [
-            ("--out", &self.out),
-            ("--residuals", &self.residuals),
-            ("--report", &self.report),
-            ("--figure", &self.figure),
-        ];
-        for (k, (flag, out)) in written.iter().enumerate() {
-            let Some(out) = out else { continue };
-            let twice = written[..k].iter().find(|(_, other)| other.as_ref().is_some_and(|o| same(o, out)));
-            if let Some((other, _)) = twice {
-                let value = out.display().to_string();
-                return Err(Error::input(
-                    flag,
-                    &value,
-                    &format!("it would replace {other}"),
-                    "name another file",
-                ));
-            }
-        }
-        // refused before the work rather than at its end
-        files.iter().for_each(|path| opened::register(path));
-        if let Some(path) = self
-            .residuals
-            .as_deref()
-            .filter(|path| path.extension().is_some() && !ends_in(path, &["svg", "png", "csv"]))
-        {
-            let value = path.display().to_string();
-            let rule = "residuals are written as SVG, PNG or CSV";
-            return Err(Error::input("--residuals", &value, rule, "let the name end in .svg, .png or .csv"));
-        }
-        Ok(())
     }
 
     fn names(&self) -> String {
