@@ -109,23 +109,7 @@ impl Simulate {
             ));
         };
         let gyroscope = self.gyroscope.gyroscope();
-        if !self.gyroscope.has_rates() && gyroscope != Gyroscope::default() {
-            return Err(Error::Input(
-                "--attitude-noise: alone it writes attitudes without rates, which errors of the rate sensor do not change; give --noise \
-                 too, or leave these errors out"
-                    .into(),
-            ));
-        }
-        let scatter = self.jitter + self.hidden_jitter;
-        if scatter >= 1.0 {
-            let rule = format!(
-                "with --jitter {} the true times scatter over {} DT, and samples must keep their order",
-                rounded(self.jitter),
-                rounded(scatter)
-            );
-            let remedy = "give fractions whose sum is below 1";
-            return Err(Error::input("--hidden-jitter", &rounded(self.hidden_jitter), &rule, remedy));
-        }
+        self.check_sensor(&gyroscope)?;
         let mut random = Random::new(self.seed);
         let grid: Vec<f64> =
             regular(0.0, self.until, self.every).and_then(Regular::kept).map_err(Error::Input)?;
@@ -137,18 +121,7 @@ impl Simulate {
         let tells_wheels = self.disturbances.has_wheel() || !wheels.is_empty();
         let mut rows =
             RowWriter::new(self.table(tells_wheels), self.format, self.out.as_deref(), tosses * grid.len())?;
-        if tosses == 1 && (self.pause.is_some() || self.scatter > 0.0) {
-            let given = if self.pause.is_some() { "--pause" } else { "--scatter" };
-            return Err(Error::Input(format!(
-                "{given}: there is one toss; ask for more by --tosses, or leave it out"
-            )));
-        }
-        let pause = self.pause.unwrap_or(20.0 * self.every);
-        if pause <= self.jitter * self.every {
-            let rule =
-                format!("times scatter over {} s, so that tosses overlap", rounded(self.jitter * self.every));
-            return Err(Error::input("--pause", &rounded(pause), &rule, "give a longer pause"));
-        }
+        let pause = self.between_tosses()?;
         for toss in 0..tosses {
             let mut scattered = |share: f64, times: &[f64]| -> Vec<f64> {
                 times.iter().map(|t| t + share * self.every * (random.uniform() - 0.5)).collect()
@@ -192,6 +165,45 @@ impl Simulate {
             }
         }
         rows.finish()
+    }
+
+    /// Errors of a sensor are of one that is read, and its samples keep their order.
+    fn check_sensor(&self, gyroscope: &Gyroscope) -> Result<(), Error> {
+        if !self.gyroscope.has_rates() && *gyroscope != Gyroscope::default() {
+            return Err(Error::Input(
+                "--attitude-noise: alone it writes attitudes without rates, which errors of the rate sensor do not change; give --noise \
+                 too, or leave these errors out"
+                    .into(),
+            ));
+        }
+        let scatter = self.jitter + self.hidden_jitter;
+        if scatter >= 1.0 {
+            let rule = format!(
+                "with --jitter {} the true times scatter over {} DT, and samples must keep their order",
+                rounded(self.jitter),
+                rounded(scatter)
+            );
+            let remedy = "give fractions whose sum is below 1";
+            return Err(Error::input("--hidden-jitter", &rounded(self.hidden_jitter), &rule, remedy));
+        }
+        Ok(())
+    }
+
+    /// Seconds from the end of a toss to the start of the next.
+    fn between_tosses(&self) -> Result<f64, Error> {
+        if self.tosses.get() == 1 && (self.pause.is_some() || self.scatter > 0.0) {
+            let given = if self.pause.is_some() { "--pause" } else { "--scatter" };
+            return Err(Error::Input(format!(
+                "{given}: there is one toss; ask for more by --tosses, or leave it out"
+            )));
+        }
+        let pause = self.pause.unwrap_or(20.0 * self.every);
+        if pause <= self.jitter * self.every {
+            let rule =
+                format!("times scatter over {} s, so that tosses overlap", rounded(self.jitter * self.every));
+            return Err(Error::input("--pause", &rounded(pause), &rule, "give a longer pause"));
+        }
+        Ok(pause)
     }
 
     fn table(&self, tells_wheels: bool) -> Table {
