@@ -85,9 +85,14 @@ pub(crate) fn median_interval(values: &[f64], mut random: Random) -> Option<(f64
     Some((medians[DRAWS / 40], medians[DRAWS - 1 - DRAWS / 40]))
 }
 
-/// The largest of some numbers that are not negative; NaN if one is NaN, which `f64::max` would drop.
+/// The larger of two numbers; NaN if one is NaN, which `f64::max` would drop.
+pub(crate) fn larger(a: f64, b: f64) -> f64 {
+    if a.is_nan() || a >= b { a } else { b }
+}
+
+/// The largest of some numbers that are not negative; NaN if one is NaN.
 pub(crate) fn largest(numbers: impl IntoIterator<Item = f64>) -> f64 {
-    numbers.into_iter().fold(0.0, |most: f64, x| if most.is_nan() || most >= x { most } else { x })
+    numbers.into_iter().fold(0.0, larger)
 }
 
 /// To four digits: what an ensemble or a measured time can bear, and the same on every machine.

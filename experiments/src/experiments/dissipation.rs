@@ -21,6 +21,7 @@ use polhode_pages::figure::{Curve, Figure, Scale};
 use polhode_pages::table::{Column, Table, row};
 
 use crate::experiment::{Context, Report};
+use crate::statistics::larger;
 
 const BODIES: [&str; 3] = ["apophis", "toutatis", "textbook"];
 
@@ -145,7 +146,7 @@ fn kept(context: &Context, report: &mut Report) -> Result<(), Error> {
             let sample = run.advance_to(steps / 1000 * look).map_err(unexpected)?;
             let far = (sample.point.to_dd().momentum_space() - space).norm() / space.norm();
             let far = far.to_f64();
-            momentum = if far.is_nan() || far > momentum { far } else { momentum };
+            momentum = larger(momentum, far);
             let energy = body.energy(&sample.state);
             rises += u64::from(energy.is_nan() || energy > least * (1.0 + RISE));
             least = least.min(energy);
@@ -245,7 +246,7 @@ fn averaged(context: &Context, report: &mut Report) -> Result<(), Error> {
                 let d = rate(ratio + interval * c)?;
                 ratio += interval / 6.0 * (a + 2.0 * (b + c) + d);
                 let off = (found / ratio - 1.0).abs();
-                deviation = if off.is_nan() || off > deviation { off } else { deviation };
+                deviation = larger(deviation, off);
                 let t = loss * interval * f64::from(k as u32);
                 drawn.push((t, found));
                 line.push((t, ratio));

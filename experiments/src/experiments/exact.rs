@@ -16,6 +16,7 @@ use polhode_pages::figure::{Curve, Figure};
 use polhode_pages::table::{Column, Table, row, to_digits};
 
 use crate::experiment::{Context, Report};
+use crate::statistics::larger;
 
 const FIXTURES: &str = include_str!("../../data/free_body.csv");
 
@@ -74,15 +75,10 @@ impl Worst {
     }
 }
 
-/// The larger of two errors; a NaN is larger than any number.
-fn larger(a: f64, b: f64) -> f64 {
-    if a.is_nan() || a > b { a } else { b }
-}
-
 fn fixtures(report: &mut Report) -> Result<(), Error> {
     let (mut by_regime, mut by_time): (BTreeMap<&str, Worst>, BTreeMap<i32, Worst>) = Default::default();
     for (number, line) in FIXTURES.lines().enumerate().filter(|(_, line)| !line.starts_with('#')).skip(1) {
-        let broken = || Error::Failed(format!("fixtures.csv:{}: not a case", number + 1));
+        let broken = || Error::Failed(format!("free_body.csv:{}: not a case", number + 1));
         let fields: Vec<&str> = line.split(',').collect();
         let double = |k: usize| fields.get(k).and_then(|f| f.parse::<f64>().ok()).ok_or_else(broken);
         let digits = |k: usize| fields.get(k).and_then(|f| f.parse::<Dd>().ok()).ok_or_else(broken);

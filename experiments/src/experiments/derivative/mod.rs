@@ -18,6 +18,7 @@ use polhode_files::error::Error;
 use polhode_pages::table::{Column, Table, row, to_digits};
 
 use crate::experiment::{Context, Report};
+use crate::statistics::larger;
 use taylor::{Variational, relative_error};
 
 const FIXTURES: &str = include_str!("../../../data/derivative.csv");
@@ -28,11 +29,6 @@ const SEED: u64 = 20_261_124;
 
 /// Bodies between whose attitudes motions are looked for.
 const BODIES: [&str; 5] = ["textbook", "toutatis", "spacecraft", "oblate", "prolate"];
-
-/// The larger error; one that is no number is the largest.
-fn worse(a: f64, b: f64) -> f64 {
-    if b.is_nan() || b > a { b } else { a }
-}
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let mut report = Report { seed: Some(SEED), ..Report::default() };
@@ -100,7 +96,7 @@ fn fixtures(report: &mut Report) -> Result<f64, Error> {
         let error = relative_error(&columns(&motion, t)?, &exact, norm, moment);
         let turned = motion.character().map_or(0.0, |c| c.spin * t.abs());
         let entry = by_regime.entry(fields[1]).or_default();
-        *entry = (entry.0 + 1, worse(entry.1, error), entry.2.max(turned));
+        *entry = (entry.0 + 1, larger(entry.1, error), entry.2.max(turned));
     }
     let mut table = Table::new(
         "regimes",
@@ -121,7 +117,7 @@ fn fixtures(report: &mut Report) -> Result<f64, Error> {
     for (regime, (cases, error, turned)) in by_regime {
         table.push(row![regime, cases, turned, error]);
         report.checks += cases;
-        worst = worse(worst, error);
+        worst = larger(worst, error);
     }
     if worst.is_nan() || worst > PROMISE {
         report.failures.push(format!("derivative: error {worst:e} exceeds {PROMISE:e}"));

@@ -9,8 +9,9 @@ use polhode::rotation::{Quat, Vec3};
 use polhode_files::error::Error;
 use polhode_pages::table::{Column, Table, row};
 
-use super::{PROMISE, best, discard, failed, worse};
+use super::{PROMISE, best, discard, failed};
 use crate::experiment::{Context, Report};
+use crate::statistics::larger;
 
 /// A top of the moments 1.25, 1.25 and 0.75 kg m² with the weight moment 2 N m, and its start.
 struct Start {
@@ -79,7 +80,7 @@ pub(super) fn run(context: &Context, report: &mut Report, timing: &mut Table) ->
                 beside_differences(&body, start, t, &found).map_err(|error| failed(name, &error))?;
             table.push(row![name, t * fastest, error, known]);
             report.checks += 1;
-            if worse(error, PROMISE + 4.0 * known) > PROMISE + 4.0 * known {
+            if larger(error, PROMISE + 4.0 * known) > PROMISE + 4.0 * known {
                 report.failures.push(format!("{name}: error {error:e} at {t} s"));
             }
         }
@@ -136,7 +137,7 @@ fn beside_differences(
             let better = |narrow: Dd, wide: Dd| (narrow * 4.0 - wide) / 3.0;
             let value = better(fine[row], middle[row]);
             known = known.max((value - better(middle[row], rough[row])).magnitude());
-            error = worse(error, (value - Dd::of(found[(row, column)])).magnitude());
+            error = larger(error, (value - Dd::of(found[(row, column)])).magnitude());
         }
     }
     Ok([error / found.amax(), known / found.amax()])

@@ -11,6 +11,7 @@ use super::SEED;
 use super::grid::{self, Shape, Start};
 use super::reference::{Form, Reference};
 use crate::experiment::{Context, Report};
+use crate::statistics::larger;
 
 /// 2⁻⁵³: errors are counted in it, of the attitude in rad and of ω relative to its length.
 pub(super) const UNIT: f64 = f64::EPSILON / 2.0;
@@ -115,7 +116,7 @@ impl Tally {
 
     fn compare(&mut self, apart: [f64; 2]) {
         for (largest, apart) in self.apart.iter_mut().zip(apart) {
-            *largest = if apart.is_nan() || apart > *largest { apart } else { *largest };
+            *largest = larger(*largest, apart);
         }
     }
 }

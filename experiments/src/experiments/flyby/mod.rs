@@ -364,9 +364,7 @@ fn accuracy(context: &Context, report: &mut Report, until: f64) -> Result<(), Er
             Ok((kept, far))
         });
         let found = found.into_iter().collect::<Result<Vec<_>, Error>>()?;
-        let most = |of: &dyn Fn(&(balance::Balance, f64)) -> f64| {
-            found.iter().map(of).fold(0.0, |most: f64, x| if x.is_nan() || x > most { x } else { most })
-        };
+        let most = |of: &dyn Fn(&(balance::Balance, f64)) -> f64| largest(found.iter().map(of));
         let (energy, momentum) = (most(&|one| one.0.energy), most(&|one| one.0.momentum));
         table.push(row![name, energy, momentum, most(&|one| one.0.exchanged), most(&|one| one.1)]);
         if name == METHOD {

@@ -9,7 +9,8 @@ use polhode::num::elliptic::Modulus;
 use polhode::num::{Dd, Real};
 use polhode_files::error::Error;
 
-use super::{Point, Statements, larger, second_derivative, unexpected};
+use super::{Point, Statements, second_derivative, unexpected};
+use crate::statistics::larger;
 
 const FREE: &str = "17.4";
 const MOMENTS: [f64; 3] = [1.0, 2.0, 3.0];

@@ -10,7 +10,8 @@ use polhode::num::{Dd, Real};
 use polhode::rotation::{EulerSequence, Vec3};
 use polhode_files::error::Error;
 
-use super::{Point, Statements, derivative, larger, unexpected};
+use super::{Point, Statements, derivative, unexpected};
+use crate::statistics::larger;
 
 const HEAVY: &str = "17.6";
 

@@ -272,11 +272,6 @@ impl Statements {
     }
 }
 
-/// The larger of two; what is no number stays.
-fn larger(a: f64, b: f64) -> f64 {
-    if a > b || a.is_nan() { a } else { b }
-}
-
 /// Derivative at `t` of a vector known in double-double: central difference, truncated below the rounding of `f64`.
 fn derivative(t: f64, f: impl Fn(Dd) -> Vec3<Dd>) -> Vector3<f64> {
     let h = Dd::of(libm::exp2(-30.0));
@@ -324,12 +319,6 @@ mod tests {
         statements.constant("", "", 1e-16, 1e-15);
         let verdicts: Vec<bool> = statements.0.iter().map(Statement::passed).collect();
         assert_eq!(verdicts, [false, false, true]);
-    }
-
-    #[test]
-    fn what_is_no_number_is_never_lost() {
-        assert_eq!([larger(1.0, 2.0), larger(2.0, 1.0)], [2.0, 2.0]);
-        assert!(larger(1.0, f64::NAN).is_nan() && larger(f64::NAN, 1.0).is_nan());
     }
 
     #[test]

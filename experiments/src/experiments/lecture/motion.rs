@@ -9,7 +9,8 @@ use polhode::num::{Dd, Random, Real};
 use polhode::rotation::{EulerSequence, Quat, Vec3};
 use polhode_files::error::Error;
 
-use super::{Point, Statements, derivative, larger, unexpected};
+use super::{Point, Statements, derivative, unexpected};
+use crate::statistics::larger;
 
 const ROTATION: &str = "17.2";
 const EQUATIONS: &str = "17.3";

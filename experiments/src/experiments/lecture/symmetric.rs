@@ -7,7 +7,8 @@ use polhode::inertia::Inertia;
 use polhode::num::{Dd, Real};
 use polhode_files::error::Error;
 
-use super::{Point, Statements, larger, second_derivative, unexpected};
+use super::{Point, Statements, second_derivative, unexpected};
+use crate::statistics::larger;
 
 const SYMMETRIC: &str = "17.5";
 
