@@ -80,7 +80,7 @@ pub(super) fn run(context: &Context, report: &mut Report, timing: &mut Table) ->
                 beside_differences(&body, start, t, &found).map_err(|error| failed(name, &error))?;
             table.push(row![name, t * fastest, error, known]);
             report.checks += 1;
-            if larger(error, PROMISE + 4.0 * known) > PROMISE + 4.0 * known {
+            if error.is_nan() || error > PROMISE + 4.0 * known {
                 report.failures.push(format!("{name}: error {error:e} at {t} s"));
             }
         }
