@@ -1,7 +1,5 @@
 //! What each method keeps and loses on real bodies, and how far its attitude is from the exact one.
 
-use std::time::Instant;
-
 use polhode::body::{Body, Clock, Problem};
 use polhode::catalogue::{self, NamedBody};
 use polhode::flow::FreeMotion;
@@ -16,6 +14,7 @@ use super::followed::{
     Followed, columns_of_effort, columns_of_ending, effort, follow, is_whole, rows_of_methods, status,
 };
 use crate::experiment::{Context, Report};
+use crate::timing::StepTime;
 
 const BODIES: [&str; 7] = ["textbook", "toutatis", "racket", "t-handle", "phone", "water", "spacecraft"];
 
@@ -183,20 +182,10 @@ fn not_predicted(named: &NamedBody, method: &dyn AnyMethod, h: f64) -> Vec<Cell>
     cells
 }
 
-/// The least time of a step over bursts of a fraction of a millisecond.
+/// Nanoseconds of a step.
 fn step_time(named: &NamedBody, method: &dyn AnyMethod) -> Result<f64, Error> {
-    const BURST: u64 = 2_000;
     let body = Body::free(named.inertia.clone());
     let start = body.state(Default::default(), named.omega_body.into()).map_err(unexpected)?;
-    let h = 1.0 / 1024.0;
     let start = body.enter(&start).map_err(unexpected)?.to_f64();
-    let mut step = method.prepare_f64(Clock::new(h), &body).map_err(unexpected)?;
-    let mut best = f64::INFINITY;
-    for _ in 0..100 {
-        let mut x = start;
-        let clock = Instant::now();
-        step.steps(&mut x, BURST);
-        best = best.min(clock.elapsed().as_secs_f64() * 1e9 / BURST as f64);
-    }
-    Ok(best)
+    Ok(StepTime::measure(method, &body, start, Clock::new(1.0 / 1024.0))?.seconds * 1e9)
 }

@@ -8,8 +8,6 @@
 //! linear subspace that the motion keeps, so that it cannot cross, whatever its energy does; nor can a method that keeps energy
 //! and |m|. A splitting has a separatrix of its own, off by the size of its error, and crosses this one next to it.
 
-use std::time::Instant;
-
 use polhode::body::{Body, Clock, Point};
 use polhode::catalogue;
 use polhode::flow::FreeMotion;
@@ -22,6 +20,7 @@ use polhode_pages::figure::{Curve, Figure, ten_to};
 use polhode_pages::table::{Column, Table, row};
 
 use crate::experiment::{Context, Report};
+use crate::timing::StepTime;
 
 /// Bodies of the catalogue: of three quite different moments, a needle, and a body that is nearly a ball.
 const BODIES: [&str; 3] = ["textbook", "racket", "spacecraft"];
@@ -288,21 +287,12 @@ fn first_wrong(
     Ok(Outcome { time: horizon, flips: motion.flips(Dd::of(horizon)), right: true, other_way: false })
 }
 
-/// The least time of a step over short bursts, ns.
+/// Nanoseconds of a step.
 fn step_time(name: &str) -> Result<f64, Error> {
-    const BURST: u64 = 2_000;
     let body = named(BODIES[0])?;
     let (start, _) = start(&body, -2, 0)?;
     let method: Box<dyn AnyMethod> = method(name).map_err(unexpected)?;
-    let mut step = method.prepare_f64(Clock::new(BUDGET), &body).map_err(unexpected)?;
-    let mut best = f64::INFINITY;
-    for _ in 0..40 {
-        let mut x = start;
-        let clock = Instant::now();
-        step.steps(&mut x, BURST);
-        best = best.min(clock.elapsed().as_secs_f64() * 1e9 / BURST as f64);
-    }
-    Ok(best)
+    Ok(StepTime::measure(method.as_ref(), &body, start, Clock::new(BUDGET))?.seconds * 1e9)
 }
 
 #[cfg(test)]
