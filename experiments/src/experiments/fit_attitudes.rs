@@ -1,6 +1,6 @@
 //! Inertia from measured attitudes: how far from the Cramér–Rao bound, beside differences of the attitudes that are fitted as rates.
 
-use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, SMatrix, UnitQuaternion, Vector3};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
@@ -9,6 +9,7 @@ use polhode_files::error::{Error, unexpected};
 use polhode_fit::{FitError, Poses, Record, Settings, fit, fit_poses, foreseen_attitude_bound};
 use polhode_pages::table::{Column, Table, row};
 
+use super::tensors::{entries, random_tensor, square};
 use crate::experiment::{Context, Report};
 use crate::statistics::{Interval, rounded};
 
@@ -236,23 +237,9 @@ impl Summary {
     }
 }
 
-fn entries(j: &Matrix3<f64>) -> SMatrix<f64, 6, 1> {
-    SMatrix::from([[j[(0, 0)], j[(1, 1)], j[(2, 2)], j[(0, 1)], j[(0, 2)], j[(1, 2)]]])
-}
-
-/// eᵀ C⁺ e, where C is singular along the trace alone.
-fn square(e: &SMatrix<f64, 6, 1>, c: &SMatrix<f64, 6, 6>) -> Option<f64> {
-    let trace = SMatrix::<f64, 6, 1>::from([[1.0, 1.0, 1.0, 0.0, 0.0, 0.0]]);
-    let regular = c + trace * trace.transpose() * c.trace();
-    Some(e.dot(&regular.cholesky()?.solve(e)))
-}
-
 fn trial(moments: [f64; 3], noise: f64, rate: usize, seconds: usize, stream: u64) -> Result<Trial, Error> {
     let mut random = Random::new(SEED).stream(stream);
-    let (w, v) = (random.normal(), random.normal_vector());
-    let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, v.x, v.y, v.z)).to_rotation_matrix();
-    let j = turn.matrix() * Matrix3::from_diagonal(&Vector3::from(moments)) * turn.matrix().transpose();
-    let j = (j + j.transpose()) / (2.0 * j.trace());
+    let j = random_tensor(moments, &mut random);
     let body = Inertia::from_tensor(j).map_err(unexpected)?;
     let omega = random.normal_vector().normalize();
     let times: Vec<f64> = (0..=rate * seconds).map(|i| i as f64 / rate as f64).collect();
@@ -267,7 +254,7 @@ fn trial(moments: [f64; 3], noise: f64, rate: usize, seconds: usize, stream: u64
         .ok_or_else(|| Error::Failed(format!("random stream {stream}: no Cramér–Rao bound")))?;
     let outcome = |tensor: Matrix3<f64>, covariance: &SMatrix<f64, 6, 6>| {
         let error = entries(&(tensor - j));
-        Some(Outcome { over_bound: square(&error, &bound)?, own: square(&error, covariance)? })
+        Some(Outcome { over_bound: square(&error, &bound, true)?, own: square(&error, covariance, true)? })
     };
     let poses = Poses::new("record", &times, &attitudes).map_err(unexpected)?;
     let own = match fit_poses(&poses, &Settings::default()) {

@@ -31,6 +31,7 @@ mod scoreboard;
 mod separatrix;
 mod splitting_order;
 mod strapdown;
+mod tensors;
 mod tumblers;
 mod wheels;
 mod work_precision;

@@ -2,7 +2,7 @@
 
 mod outcome;
 
-use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
@@ -14,6 +14,7 @@ use polhode_pages::figure::{Curve, Figure};
 use polhode_pages::table::{Cell, Column, Table};
 use polhode_rivals::{ATTITUDE_NOISE, Given, RIVALS, Rival};
 
+use super::tensors::{entries, random_tensor, square};
 use crate::experiment::{Context, Report};
 use crate::statistics::rounded;
 use outcome::{Outcome, Summary, best};
@@ -189,17 +190,6 @@ fn promise(body: usize, noise: f64, trials: u64) -> Option<(f64, f64)> {
     (body == 0).then_some((1.0 - margin, if noise < 0.05 { 1.0 + margin } else { 1.6 }))
 }
 
-fn entries(j: &Matrix3<f64>) -> SMatrix<f64, 6, 1> {
-    SMatrix::from([[j[(0, 0)], j[(1, 1)], j[(2, 2)], j[(0, 1)], j[(0, 2)], j[(1, 2)]]])
-}
-
-/// eᵀ C⁺ e, where C is singular along the trace alone.
-fn square(e: &SMatrix<f64, 6, 1>, c: &SMatrix<f64, 6, 6>) -> Option<f64> {
-    let trace = SMatrix::<f64, 6, 1>::from([[1.0, 1.0, 1.0, 0.0, 0.0, 0.0]]);
-    let regular = c + trace * trace.transpose() * c.trace();
-    Some(e.dot(&regular.cholesky()?.solve(e)))
-}
-
 fn trial(
     (_, moments, drag): (&str, [f64; 3], f64),
     noise: f64,
@@ -208,10 +198,7 @@ fn trial(
     asked: impl Fn(Rival) -> bool,
 ) -> Result<Trial, Error> {
     let mut random = Random::new(SEED).stream(stream);
-    let (w, v) = (random.normal(), random.normal_vector());
-    let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, v.x, v.y, v.z)).to_rotation_matrix();
-    let j = turn.matrix() * Matrix3::from_diagonal(&Vector3::from(moments)) * turn.matrix().transpose();
-    let j = (j + j.transpose()) / (2.0 * j.trace());
+    let j = random_tensor(moments, &mut random);
     let omega = random.normal_vector().normalize();
     let failed = |error: &dyn std::fmt::Display| Error::Failed(format!("random stream {stream}: {error}"));
     let body = Inertia::from_tensor(j).map_err(|error| failed(&error))?;
@@ -227,14 +214,16 @@ fn trial(
     let known = Settings::default().with_torque(model);
     let bound = foreseen_bound_with(&body, omega, &times, noise, &known, coefficients)
         .ok_or_else(|| failed(&"no Cramér–Rao bound"))?;
-    let over_bound = |shape: Matrix3<f64>| square(&entries(&(shape - j)), &bound);
+    let over_bound = |shape: Matrix3<f64>| square(&entries(&(shape - j)), &bound, true);
 
     let (mut own, mut broken, mut physical) = (None, false, true);
     match fit(&record, &Settings::default()) {
         Ok(estimate) => {
             let error = entries(&(estimate.shape.tensor() - j));
-            own = over_bound(estimate.shape.tensor())
-                .map(|over_bound| Outcome { over_bound, own: square(&error, &estimate.free_covariance) });
+            own = over_bound(estimate.shape.tensor()).map(|over_bound| Outcome {
+                over_bound,
+                own: square(&error, &estimate.free_covariance, true),
+            });
             physical = estimate.principal[2] <= 0.5 && estimate.principal[0] > 0.0;
         }
         Err(FitError::Unidentifiable(_) | FitError::Unsettled { .. }) => {}

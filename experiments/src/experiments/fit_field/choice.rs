@@ -6,7 +6,7 @@
 //! beside that. Chance is that of the binomial distribution; Wilson's interval, which was taken at first, refutes two of 64, which
 //! happens once in 500 times.
 
-use nalgebra::{Matrix3, Quaternion, UnitQuaternion};
+use nalgebra::Matrix3;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_files::error::{Error, unexpected};
@@ -14,8 +14,8 @@ use polhode_fit::{Disturbances, Gyroscope, Record, Settings, TorqueModel, fit, s
 use polhode_pages::table::{Column, Table, row};
 
 use super::tally::ELLIPSOIDS;
-use super::trial::{entries, square};
 use crate::experiment::Context;
+use crate::experiments::tensors::{entries, random_rotation, square};
 use crate::statistics::{Interval, chance_of, rounded};
 
 const SEED: u64 = 402_026;
@@ -46,8 +46,7 @@ struct Answer {
 
 fn trial(acting: Acting, stream: u64) -> Result<Option<Answer>, Error> {
     let mut random = Random::new(SEED).stream(stream);
-    let (w, v) = (random.normal(), random.normal_vector());
-    let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, v.x, v.y, v.z)).to_rotation_matrix();
+    let turn = random_rotation(&mut random);
     let trace: f64 = MOMENTS.iter().sum();
     let moments = Matrix3::from_diagonal(&(nalgebra::Vector3::from(MOMENTS) / trace));
     let j = turn.matrix() * moments * turn.matrix().transpose();

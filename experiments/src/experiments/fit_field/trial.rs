@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, SMatrix, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_files::error::{Error, unexpected};
@@ -10,6 +10,7 @@ use polhode_fit::{Estimate, FitError, Record, Segment, Warning, fit, simulate_wi
 
 use super::bound::Problem;
 use super::cases::{Case, Drawn};
+use crate::experiments::tensors::{entries, random_tensor, square};
 
 /// The fit of one record.
 pub(in crate::experiments) struct Trial {
@@ -37,26 +38,9 @@ pub(in crate::experiments) struct Answer {
     pub(in crate::experiments) lines_cover: bool,
 }
 
-pub(in crate::experiments) type Entries = SMatrix<f64, 6, 1>;
-
-pub(in crate::experiments) fn entries(j: &Matrix3<f64>) -> Entries {
-    SMatrix::from([[j[(0, 0)], j[(1, 1)], j[(2, 2)], j[(0, 1)], j[(0, 2)], j[(1, 2)]]])
-}
-
-/// eᵀ C⁻¹ e; with `shape`, C is singular along the trace.
-pub(in crate::experiments) fn square(e: &Entries, c: &SMatrix<f64, 6, 6>, shape: bool) -> Option<f64> {
-    let trace = SMatrix::<f64, 6, 1>::from([[1.0, 1.0, 1.0, 0.0, 0.0, 0.0]]);
-    let regular = if shape { c + trace * trace.transpose() * c.trace() } else { *c };
-    Some(e.dot(&regular.cholesky()?.solve(e)))
-}
-
 pub(super) fn trial(case: &Case, noise: f64, times: &[f64], seed: u64, stream: u64) -> Result<Trial, Error> {
     let mut random = Random::new(seed).stream(stream);
-    let (w, v) = (random.normal(), random.normal_vector());
-    let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, v.x, v.y, v.z)).to_rotation_matrix();
-    let moments = Vector3::new(1.0, 2.0, 2.6);
-    let j = turn.matrix() * Matrix3::from_diagonal(&moments) * turn.matrix().transpose();
-    let j = (j + j.transpose()) / (2.0 * j.trace());
+    let j = random_tensor([1.0, 2.0, 2.6], &mut random);
     let omega = random.normal_vector().normalize();
     let body = Inertia::from_tensor(j).map_err(unexpected)?;
     let drawn = case.draw(noise, (j * omega).norm(), &mut random);

@@ -9,14 +9,15 @@ mod sensor;
 
 use std::time::Instant;
 
-use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
+use nalgebra::{Matrix3, Vector3};
 use polhode::num::Random;
 use polhode_files::error::{Error, unexpected};
 use polhode_fit::{FitError, Record, Segment, Settings, fit};
 use polhode_pages::table::{Column, Table, row};
 
 use super::fit_field::tally::Tally;
-use super::fit_field::trial::{Answer, Trial, Verdict, entries, lines_cover, square};
+use super::fit_field::trial::{Answer, Trial, Verdict, lines_cover};
+use super::tensors::{entries, random_rotation, square};
 use crate::experiment::{Context, Report};
 use crate::statistics::{Interval, rounded};
 use cases::{CASES, Case, Model, Sampling, Start};
@@ -25,8 +26,7 @@ const SEED: u64 = 404_026;
 
 /// A body of trace 1 with its axes in a random direction.
 fn tensor(moments: [f64; 3], random: &mut Random) -> (Matrix3<f64>, Matrix3<f64>) {
-    let (w, v) = (random.normal(), random.normal_vector());
-    let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, v.x, v.y, v.z)).to_rotation_matrix();
+    let turn = random_rotation(random);
     let trace: f64 = moments.iter().sum();
     let j =
         turn.matrix() * Matrix3::from_diagonal(&(Vector3::from(moments) / trace)) * turn.matrix().transpose();
