@@ -1,7 +1,5 @@
 //! Bodies with starts and forces on which the methods that choose their steps are tried.
 
-#![allow(dead_code)] // each test binary takes what it needs
-
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::body::{Body, Force, Potential, State, Time};
 use polhode::inertia::Inertia;

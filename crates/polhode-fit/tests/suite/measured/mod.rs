@@ -1,8 +1,5 @@
 //! Noisy records of known bodies, and the distance of an estimate in its own covariance.
 
-#![allow(dead_code)] // each test binary takes what it needs
-#![allow(clippy::unwrap_used)]
-
 pub(crate) mod torques;
 
 use nalgebra::{Matrix3, Quaternion, Rotation3, SMatrix, UnitQuaternion, Vector3};

@@ -1,7 +1,5 @@
 //! Motions under torques by a classical Runge–Kutta step, and the Cramér–Rao bound by differences of them.
 
-#![allow(clippy::unwrap_used)]
-
 use nalgebra::{DMatrix, Matrix3, SMatrix, Vector3};
 
 /// Torque on a body of trace 1 at a time and an angular velocity.
