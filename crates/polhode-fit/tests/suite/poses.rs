@@ -1,6 +1,6 @@
 //! Attitudes in, tensor out.
 
-use nalgebra::{Matrix3, Quaternion, SMatrix, UnitQuaternion, Vector3};
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use polhode::flow::FreeMotion;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
@@ -10,11 +10,11 @@ use polhode_fit::{
     TorqueModel, Warning, fit_poses, foreseen_attitude_bound, simulate_poses,
 };
 
+use crate::measured::{distance, entries, random_rotation, turned};
+
 fn body(moments: [f64; 3], random: &mut Random) -> Inertia {
-    let (w, v) = (random.normal(), random.normal_vector());
-    let turn = UnitQuaternion::from_quaternion(Quaternion::new(w, v.x, v.y, v.z)).to_rotation_matrix();
-    let j = turn.matrix() * Matrix3::from_diagonal(&Vector3::from(moments)) * turn.matrix().transpose();
-    Inertia::from_tensor((j + j.transpose()) / (2.0 * j.trace())).unwrap()
+    let j = turned(moments, &random_rotation(random));
+    Inertia::from_tensor(j / j.trace()).unwrap()
 }
 
 fn attitudes(
@@ -29,17 +29,6 @@ fn attitudes(
         (motion.at(t - middle).unwrap().attitude * off).into()
     };
     times.iter().map(|t| one(t, random)).collect()
-}
-
-fn entries(j: &Matrix3<f64>) -> SMatrix<f64, 6, 1> {
-    SMatrix::from([[j[(0, 0)], j[(1, 1)], j[(2, 2)], j[(0, 1)], j[(0, 2)], j[(1, 2)]]])
-}
-
-/// eᵀ C⁺ e, where C is singular along the trace alone.
-fn square(e: &SMatrix<f64, 6, 1>, c: &SMatrix<f64, 6, 6>) -> f64 {
-    let trace = SMatrix::<f64, 6, 1>::from([[1.0, 1.0, 1.0, 0.0, 0.0, 0.0]]);
-    let regular = c + trace * trace.transpose() * c.trace();
-    e.dot(&regular.cholesky().unwrap().solve(e))
 }
 
 const ASYMMETRIC: [f64; 3] = [1.0, 2.0, 2.6];
@@ -105,8 +94,8 @@ fn errors_are_those_of_the_bound() {
                     Err(error) => panic!("{moments:?} {noise} {trial}: {error}"),
                 };
                 let off = entries(&(estimate.shape.tensor() - toss.body.tensor()));
-                squares += square(&off, &bound);
-                own += square(&off, &estimate.free_covariance);
+                squares += distance(&off, &bound);
+                own += distance(&off, &estimate.free_covariance);
                 count += 5.0;
                 assert_eq!(estimate.method, Method::ExactMotion);
                 let found = estimate.attitudes.unwrap();
@@ -179,7 +168,7 @@ fn rates_beside_attitudes_are_aligned_and_both_tell() {
     // the tensor is in the axes of the rates
     let r = turn.to_rotation_matrix();
     let expected = r.matrix() * toss.body.tensor() * r.matrix().transpose();
-    assert!(square(&entries(&(estimate.shape.tensor() - expected)), &estimate.free_covariance) < 20.5);
+    assert!(distance(&entries(&(estimate.shape.tensor() - expected)), &estimate.free_covariance) < 20.5);
     assert!(found.moving_gain < 12.0 && estimate.warnings.is_empty(), "{:?}", estimate.warnings);
     let alone = fit_poses(&both.without_rates(), &Settings::default()).unwrap();
     assert!(estimate.sigma_principal[0] < alone.sigma_principal[0]);
@@ -234,7 +223,7 @@ fn axes_that_turn_against_each_other_are_fitted() {
             });
             let r = fixed.to_rotation_matrix();
             let expected = r.matrix() * toss.body.tensor() * r.matrix().transpose();
-            let chi2 = square(&entries(&(estimate.shape.tensor() - expected)), &estimate.free_covariance);
+            let chi2 = distance(&entries(&(estimate.shape.tensor() - expected)), &estimate.free_covariance);
             println!(
                 "{size} {is_of_rates} {stream}: {named:?} chi2 {chi2:.1} {:?}",
                 estimate.sigma_principal
@@ -289,7 +278,7 @@ fn errors_of_rates_beside_attitudes_are_named_and_taken_out() {
             other => panic!("{offset} {scale}: {other:?}"),
         }
         assert_eq!(e.torque.model, TorqueModel::None);
-        let chi2 = square(&entries(&(e.shape.tensor() - expected)), &e.free_covariance);
+        let chi2 = distance(&entries(&(e.shape.tensor() - expected)), &e.free_covariance);
         // where the 99.99 % ellipsoid ends
         assert!(chi2 < 25.75, "{offset} {scale}: {chi2}");
     }
@@ -443,7 +432,7 @@ fn several_segments_share_the_tensor_and_the_noise_may_be_given() {
         estimate.per_segment
     );
     let off = entries(&(estimate.shape.tensor() - tosses[0].body.tensor()));
-    assert!(square(&off, &estimate.free_covariance) < 20.5);
+    assert!(distance(&off, &estimate.free_covariance) < 20.5);
     // twice the noise that there is: twice the deviations
     let given = fit_poses(&all, &Settings::default().with_attitude_noise(1e-2)).unwrap();
     assert!((given.sigma_principal[0] / estimate.sigma_principal[0] - 2.0).abs() < 0.1);
@@ -482,7 +471,7 @@ fn torques_are_reckoned_with_in_closed_form_where_there_is_one() {
         let read = simulate_poses(&body, omega, &times, &acting, &gyroscope, 3.5e-3, &mut random).unwrap();
         Poses::new("torque", &times, &read.attitudes).unwrap()
     };
-    let distance = |e: &Estimate| square(&entries(&(e.shape.tensor() - body.tensor())), &e.free_covariance);
+    let distance = |e: &Estimate| distance(&entries(&(e.shape.tensor() - body.tensor())), &e.free_covariance);
     let settings = Settings::default();
     for (k, drag) in [1e-4, 1e-2, 5e-2].into_iter().enumerate() {
         let slowed = poses(Disturbances::default().with_relative_drag(drag), k as u64);
@@ -549,7 +538,7 @@ fn spin(
     let bound =
         foreseen_attitude_bound(&body, omega, &times, noise).map_or(f64::INFINITY, |b| b.trace().sqrt());
     let found = fit_poses(&Poses::new("spin", &times, &measured).unwrap(), &Settings::default());
-    (bound, found.map(|e| square(&entries(&(e.shape.tensor() - body.tensor())), &e.free_covariance)))
+    (bound, found.map(|e| distance(&entries(&(e.shape.tensor() - body.tensor())), &e.free_covariance)))
 }
 
 /// Two turns of a body that spins nearly about its first or third axis: its likelihood has valleys that bend, and maxima that are not the
@@ -590,7 +579,7 @@ fn near_steady_spins_are_answered_rightly_or_refused() {
     let motion = FreeMotion::from_omega(&body, UnitQuaternion::identity(), omega).unwrap();
     let measured = attitudes(&motion, &times, 2.0_f64.to_radians(), &mut random);
     let e = fit_poses(&Poses::new("spin", &times, &measured).unwrap(), &Settings::default()).unwrap();
-    let off = square(&entries(&(e.shape.tensor() - body.tensor())), &e.free_covariance);
+    let off = distance(&entries(&(e.shape.tensor() - body.tensor())), &e.free_covariance);
     assert!(off < 20.5 && e.sigma_principal[0] < 0.01, "{off} {:?}", e.principal);
 }
 
