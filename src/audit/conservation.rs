@@ -21,7 +21,7 @@ const DRAWN: usize = 2000;
 const SPREAD: f64 = 6.0;
 
 /// What is kept, by `reading`, and its errors at rows for figures; the largest errors are those of all rows where the record has
-/// an angular velocity or momentum. `allowed`: what attitude and angular velocity of a row may be off.
+/// an angular velocity or momentum. Attitude and angular velocity of a row may be off by so much.
 pub(super) fn conservation(
     record: &Trajectory,
     reading: &Reading,

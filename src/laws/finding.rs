@@ -80,7 +80,7 @@ impl Finding {
         Finding { why: one_line(why.as_ref()), ..self }
     }
 
-    /// The word of the kind of motion: `free`, `gravity`, `potential` or `torque`.
+    /// The word of the kind of motion: `free`, `gravity`, `potential`, `torque`, `wheels` or `wheels+U`.
     #[must_use]
     pub fn motion(&self) -> &'static str {
         word_of(self.problem)

@@ -90,7 +90,7 @@ pub(super) struct Arrays {
     omegas: Option<Array<3>>,
 }
 
-/// Propagates the members of `range` and writes their arrays; `with_omegas` are written too.
+/// Propagates the members of `range` and writes their arrays.
 pub(super) fn propagate(
     spec: &Spec,
     range: Range<u64>,
