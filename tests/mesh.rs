@@ -3,10 +3,10 @@
 use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use polhode::inertia::{Amount, MassProperties, Mesh, Solid};
 
-type Triangle = [Vector3<f64>; 3];
+pub(crate) type Triangle = [Vector3<f64>; 3];
 
 /// The surface of the box [0, 1]³, each face cut into 2 n² triangles, corners counterclockwise from outside.
-fn cube(n: usize) -> Vec<Triangle> {
+pub(crate) fn cube(n: usize) -> Vec<Triangle> {
     let mut triangles = Vec::new();
     for axis in 0..3 {
         for side in [0.0, 1.0] {

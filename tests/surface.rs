@@ -3,29 +3,7 @@
 use nalgebra::{Matrix3, Vector3};
 use polhode::inertia::{Amount, Closing, FLOAT_WELD, Mesh, MeshError, Repair, Solid, Surface};
 
-type Triangle = [Vector3<f64>; 3];
-
-/// The surface of the box [0, 1]³, each face cut into 2 n² triangles, corners counterclockwise from outside.
-fn cube(n: usize) -> Vec<Triangle> {
-    let mut triangles = Vec::new();
-    for axis in 0..3 {
-        for side in [0.0, 1.0] {
-            let at = |i: usize, j: usize| {
-                let mut v = Vector3::repeat(side);
-                v[(axis + 1) % 3] = i as f64 / n as f64;
-                v[(axis + 2) % 3] = j as f64 / n as f64;
-                v
-            };
-            for (i, j) in (0..n * n).map(|k| (k / n, k % n)) {
-                let (a, b, c, d) = (at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1));
-                for [p, q, r] in [[a, b, c], [a, c, d]] {
-                    triangles.push(if side == 1.0 { [p, q, r] } else { [p, r, q] });
-                }
-            }
-        }
-    }
-    triangles
-}
+use crate::mesh::{Triangle, cube};
 
 /// Numbers without a pattern in [0, 1).
 fn scattered(count: usize) -> impl Iterator<Item = f64> {
