@@ -1,27 +1,18 @@
 //! What makes a record wrong is named: another body, another torque, an integrator of another program.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use polhode::audit::{
-    Attitudes, Fault, Frame, Judgement, Misplaced, Question, Reading, Suspect, Trajectory, audit,
-};
+use polhode::audit::{Attitudes, Fault, Frame, Judgement, Misplaced, Question, Suspect, Trajectory, audit};
 use polhode::body::{Body, Force};
 use polhode::inertia::Inertia;
 use polhode::method::{AxisOrder, method};
 use polhode::rotation::{Quat, Vec3};
 use polhode::run::Run;
-use polhode::units::RateUnit;
 
-use super::records::{Form, Seeded, Writing, Written, record};
+use super::records::{Written, plain};
 use super::ties::states;
 
 fn free(moments: [f64; 3]) -> Body {
     Body::free(Inertia::from_moments(moments).unwrap())
-}
-
-fn plain(states: &[Written]) -> Trajectory {
-    let mut convention = Reading::default();
-    convention.rate_unit = Some(RateUnit::RadiansPerSecond);
-    record(&mut Seeded(3), states, &convention, Form::Quaternion, Writing::EXACT)
 }
 
 /// Every 0.05 s.

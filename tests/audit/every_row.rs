@@ -8,7 +8,7 @@ use polhode::audit::{
 use polhode::body::Body;
 use polhode::inertia::Inertia;
 
-use super::records::{Form, Seeded, Writing, Written, reading, record};
+use super::records::{Form, Seeded, Writing, Written, plain, reading, record};
 use super::ties::states;
 
 fn body() -> Body {
@@ -21,13 +21,6 @@ fn motion(rows: usize) -> Vec<Written> {
     let start =
         body.state(UnitQuaternion::from_euler_angles(0.3, -0.8, 1.9), Vector3::new(0.4, 1.0, -0.3)).unwrap();
     states(&body, &start, 0.05, rows)
-}
-
-fn plain(states: &[Written]) -> Trajectory {
-    let mut random = Seeded(3);
-    let mut convention = Reading::default();
-    convention.rate_unit = Some(RateUnit::RadiansPerSecond);
-    record(&mut random, states, &convention, Form::Quaternion, Writing::EXACT)
 }
 
 fn judged(record: &Trajectory) -> Judgement {

@@ -1,12 +1,12 @@
 //! The numbers of a verdict are those of the record: each is put there with a known size, and worked out here by other means.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use polhode::audit::{Judgement, Question, RateUnit, Reading, Trajectory, Verdict, audit};
+use polhode::audit::{Judgement, Question, Verdict, audit};
 use polhode::body::{Body, Conserved};
 use polhode::inertia::Inertia;
 use polhode::rotation::{Quat, Vec3};
 
-use super::records::{Form, Seeded, Writing, Written, record};
+use super::records::{Form, Seeded, Writing, Written, plain, plain_in, record};
 use super::ties::states;
 
 const MOMENTS: [f64; 3] = [1.0, 2.0, 3.0];
@@ -23,14 +23,8 @@ fn motion(omega: [f64; 3]) -> Vec<Written> {
     states(&body, &body.state(attitude, omega.into()).unwrap(), STEP, ROWS)
 }
 
-fn plain(states: &[Written], writing: Writing) -> Trajectory {
-    let mut convention = Reading::default();
-    convention.rate_unit = Some(RateUnit::RadiansPerSecond);
-    record(&mut Seeded(3), states, &convention, Form::Quaternion, writing)
-}
-
 fn verdict(states: &[Written]) -> Verdict {
-    audit(&plain(states, Writing::EXACT), &Question::new(Some(body()))).unwrap()
+    audit(&plain(states), &Question::new(Some(body()))).unwrap()
 }
 
 /// How a row is changed: a turn of the attitude in space, rad, and a factor of ω.
@@ -162,7 +156,7 @@ fn noise_is_measured_in_both_columns() {
         near(resolution.rates.unwrap(), 3.0 * noise / size, 0.15);
         assert_eq!((resolution.digits, resolution.single_precision), (17, false));
         // of a column that is not there it is none
-        let mut alone = plain(&rows, Writing::EXACT);
+        let mut alone = plain(&rows);
         alone.rates = None;
         let told = audit(&alone, &Question::new(Some(body()))).unwrap().noise;
         assert_eq!(told.map(|noise| noise.rates), Some(0.0));
@@ -178,7 +172,7 @@ fn noise_is_measured_in_both_columns() {
 fn digits_leave_half_a_unit_of_the_last_open() {
     let rows = motion([0.4, 1.0, -0.3]);
     for (digits, single) in [(5, false), (7, false), (17, true)] {
-        let written = plain(&rows, Writing { digits, single, noise: 0.0 });
+        let written = plain_in(&rows, Writing { digits, single, noise: 0.0 });
         let verdict = audit(&written, &Question::new(Some(body()))).unwrap();
         let resolution = verdict.resolution;
         let unit = if single { 6e-8 } else { 10_f64.powi(-(digits as i32)) };

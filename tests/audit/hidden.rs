@@ -1,14 +1,12 @@
 //! Faults that hide in what is declared, beside other columns, or in what a record leaves open.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use polhode::audit::{
-    Attitudes, Fault, Frame, Judgement, Noise, Question, RateUnit, Reading, Trajectory, audit,
-};
+use polhode::audit::{Attitudes, Fault, Frame, Judgement, Noise, Question, Trajectory, audit};
 use polhode::body::{Body, Force};
 use polhode::inertia::Inertia;
 use polhode::rotation::{Quat, Vec3};
 
-use super::records::{Form, Seeded, Writing, Written, record, tumbling};
+use super::records::{Seeded, Written, plain, tumbling};
 use super::ties::states;
 
 const MOMENTS: [f64; 3] = [1.0, 2.0, 2.5];
@@ -23,12 +21,6 @@ fn motion(rows: usize) -> Vec<Written> {
     let start =
         body.state(UnitQuaternion::from_euler_angles(0.3, -0.8, 1.9), Vector3::new(0.4, 1.0, -0.3)).unwrap();
     states(&body, &start, 0.05, rows)
-}
-
-fn plain(states: &[Written]) -> Trajectory {
-    let mut convention = Reading::default();
-    convention.rate_unit = Some(RateUnit::RadiansPerSecond);
-    record(&mut Seeded(3), states, &convention, Form::Quaternion, Writing::EXACT)
 }
 
 fn judged(record: &Trajectory, body: Option<Body>) -> Judgement {

@@ -127,6 +127,18 @@ impl Writing {
 /// A state to be written: attitude, body → space, and ω in body axes.
 pub(crate) type Written = (f64, Quat<f64>, Vec3<f64>);
 
+/// The record of `states` in this library's convention.
+pub(crate) fn plain(states: &[Written]) -> Trajectory {
+    plain_in(states, Writing::EXACT)
+}
+
+/// The same in another writing.
+pub(crate) fn plain_in(states: &[Written], writing: Writing) -> Trajectory {
+    let mut convention = Reading::default();
+    convention.rate_unit = Some(RateUnit::RadiansPerSecond);
+    record(&mut Seeded(3), states, &convention, Form::Quaternion, writing)
+}
+
 /// The record of `states` in the convention `reading`.
 pub(crate) fn record(
     random: &mut Seeded,
