@@ -99,41 +99,8 @@ impl<'t> Dump<'t> {
                 "TIME" => self.time = Some(self.number()?),
                 "NUMBER OF ATOMS" | "NUMBER OF ENTRIES" => self.rows = self.number()?.parse().ok(),
                 text if text.starts_with("ATOMS") || text.starts_with("ENTRIES") => {
-                    let other = |rule: &str, remedy: &str| {
-                        Err(self.lines.refused(Rule::Other(rule.into())).with_remedy(remedy))
-                    };
-                    let Some(rows) = self.rows.take() else {
-                        return other(
-                            "a block of rows without their number",
-                            "dump it with ITEM: NUMBER OF ATOMS or ENTRIES",
-                        );
-                    };
-                    let (time, name) = match (self.time.take(), self.step.take()) {
-                        (Some(time), _) => (time, "t"),
-                        (None, Some(step)) => (step, "timestep"),
-                        (None, None) => {
-                            return other(
-                                "a block of rows without a time step",
-                                "dump it with ITEM: TIMESTEP",
-                            );
-                        }
-                    };
-                    let names: Vec<&str> = text.split_whitespace().skip(1).collect();
-                    let names = format!("{name} {}", names.join(" "));
-                    (self.now, self.left, self.is_in_rows) = (time, (rows, rows), true);
-                    match &self.names {
-                        None => {
-                            line.text.clone_from(&names);
-                            (line.number, line.is_ended, self.names) = (self.lines.number, true, Some(names));
-                            return Ok(true);
-                        }
-                        Some(before) if *before != names => {
-                            return other(
-                                "other columns than in the block before",
-                                "dump one set of columns",
-                            );
-                        }
-                        Some(_) => {}
+                    if self.begin(text, line)? {
+                        return Ok(true);
                     }
                 }
                 // bounds of the box: of no interest here
@@ -151,6 +118,39 @@ impl<'t> Dump<'t> {
         line.text = format!("{} {}", self.now, self.lines.text.trim());
         (line.number, line.is_ended) = (self.lines.number, self.lines.is_ended);
         Ok(true)
+    }
+
+    /// Begins a block of rows. Whether it is the first, whose columns are the header, in `line`.
+    fn begin(&mut self, item: &str, line: &mut Line) -> Result<bool, TableError> {
+        let other =
+            |rule: &str, remedy: &str| Err(self.lines.refused(Rule::Other(rule.into())).with_remedy(remedy));
+        let Some(rows) = self.rows.take() else {
+            return other(
+                "a block of rows without their number",
+                "dump it with ITEM: NUMBER OF ATOMS or ENTRIES",
+            );
+        };
+        let (time, name) = match (self.time.take(), self.step.take()) {
+            (Some(time), _) => (time, "t"),
+            (None, Some(step)) => (step, "timestep"),
+            (None, None) => {
+                return other("a block of rows without a time step", "dump it with ITEM: TIMESTEP");
+            }
+        };
+        let names: Vec<&str> = item.split_whitespace().skip(1).collect();
+        let names = format!("{name} {}", names.join(" "));
+        (self.now, self.left, self.is_in_rows) = (time, (rows, rows), true);
+        match &self.names {
+            None => {
+                line.text.clone_from(&names);
+                (line.number, line.is_ended, self.names) = (self.lines.number, true, Some(names));
+                Ok(true)
+            }
+            Some(before) if *before != names => {
+                other("other columns than in the block before", "dump one set of columns")
+            }
+            Some(_) => Ok(false),
+        }
     }
 
     /// The number on the next line.

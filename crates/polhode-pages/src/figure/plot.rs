@@ -125,11 +125,53 @@ impl Figure {
             page.rectangle([left, above], [right, below], Some(Fill::Flat(FAINT, 0.6)), None);
         }
         self.draw_axes(&mut page, [x, y], [[left, right], [top, bottom]]);
-        let mut ends: Vec<Option<[f64; 2]>> = Vec::new();
-        let mut hollow = Vec::new();
-        let mut filled = Vec::new();
+        let (ends, marks) = self.draw_series(&mut page, place, [left, right]);
+        for events in &self.events {
+            // many lines would hide the curves
+            let lines = if events.at.len() > MOST_LINES { &[][..] } else { &events.at[..] };
+            page.as_class("event", |page| {
+                for at in lines {
+                    let at = across(x.share(*at));
+                    page.line(vec![[at, top], [at, bottom]], Stroke::new(GREY, THIN).dashed(Some(DOTTED)));
+                }
+            });
+            page.as_class(events.class, |page| {
+                for at in &events.at {
+                    arrow_down(page, [across(x.share(*at)), top]);
+                }
+            });
+        }
+        for (k, at, colour) in marks {
+            page.as_class("mark", |page| mark(page, k, at, colour, 1.0));
+        }
+        for guide in &self.guides {
+            let Some(line) = guide.line(x, y) else { continue };
+            let share = |(u, v): (f64, f64)| {
+                let [x, y] = [(x, u), (y, v)].map(|(axis, at)| axis.share_of_place(at));
+                [across(x), down(y)]
+            };
+            let line = line.map(share);
+            page.line(line.to_vec(), Stroke::new(GREY, 1.2).dashed(Some(DOTTED)));
+            if guide.ends.is_some() {
+                let above = [line[1][0] - 3.0, line[1][1] - 5.0];
+                page.note(above, &guide.label, NAME, Anchor::End);
+            }
+        }
+        let heights: Vec<f64> = self.levels().map(|level| down(y.share(level.through.1))).collect();
+        self.draw_names(&mut page, &ends, &heights, [[left, right], [top, bottom]]);
+        page
+    }
+
+    /// Draws the curves, dots and bars; where each series ends, and the marks that belong on top.
+    fn draw_series(
+        &self,
+        page: &mut Canvas,
+        place: impl Fn(&(f64, f64)) -> [f64; 2],
+        [left, right]: [f64; 2],
+    ) -> (Vec<Option<[f64; 2]>>, Vec<Mark>) {
+        let (mut ends, mut hollow, mut filled) = (Vec::new(), Vec::new(), Vec::new());
         for (k, series) in self.series.iter().enumerate() {
-            let places: Vec<[f64; 2]> = series.points.iter().map(place).collect();
+            let places: Vec<[f64; 2]> = series.points.iter().map(&place).collect();
             let colour = series.colour(k);
             for (p, bar) in series.points.iter().zip(&series.spread) {
                 let line = vec![place(&(p.0, bar.0)), place(&(p.0, bar.1))];
@@ -169,40 +211,8 @@ impl Figure {
                 }
             }
         }
-        for events in &self.events {
-            // many lines would hide the curves
-            let lines = if events.at.len() > MOST_LINES { &[][..] } else { &events.at[..] };
-            page.as_class("event", |page| {
-                for at in lines {
-                    let at = across(x.share(*at));
-                    page.line(vec![[at, top], [at, bottom]], Stroke::new(GREY, THIN).dashed(Some(DOTTED)));
-                }
-            });
-            page.as_class(events.class, |page| {
-                for at in &events.at {
-                    arrow_down(page, [across(x.share(*at)), top]);
-                }
-            });
-        }
-        for (k, at, colour) in hollow.into_iter().chain(filled) {
-            page.as_class("mark", |page| mark(page, k, at, colour, 1.0));
-        }
-        for guide in &self.guides {
-            let Some(line) = guide.line(x, y) else { continue };
-            let share = |(u, v): (f64, f64)| {
-                let [x, y] = [(x, u), (y, v)].map(|(axis, at)| axis.share_of_place(at));
-                [across(x), down(y)]
-            };
-            let line = line.map(share);
-            page.line(line.to_vec(), Stroke::new(GREY, 1.2).dashed(Some(DOTTED)));
-            if guide.ends.is_some() {
-                let above = [line[1][0] - 3.0, line[1][1] - 5.0];
-                page.note(above, &guide.label, NAME, Anchor::End);
-            }
-        }
-        let heights: Vec<f64> = self.levels().map(|level| down(y.share(level.through.1))).collect();
-        self.draw_names(&mut page, &ends, &heights, [[left, right], [top, bottom]]);
-        page
+        hollow.append(&mut filled);
+        (ends, hollow)
     }
 
     fn draw_axes(
@@ -243,6 +253,9 @@ impl Figure {
         page.text_upwards([16.0, 0.5 * (top + bottom)], &self.y, AXIS);
     }
 }
+
+/// A mark of a series by its number, its place and its colour.
+type Mark = (usize, [f64; 2], Colour);
 
 /// Events beyond which no lines go down from their marks.
 const MOST_LINES: usize = 16;
