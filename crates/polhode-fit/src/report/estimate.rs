@@ -9,7 +9,8 @@ use crate::physical::constraint::ActiveConstraint;
 use crate::report::attitudes::AttitudeFit;
 use crate::report::identifiability::Identifiability;
 use crate::report::model::{ErrorFit, ModelFit};
-use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, SegmentSummary, Systematic};
+use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, Systematic};
+use crate::report::segments::SegmentSummary;
 use crate::report::torque_free::{InvariantTrend, Whiteness};
 use crate::report::warning::Warning;
 

@@ -15,7 +15,6 @@ pub(crate) mod model;
 pub(crate) mod motion;
 pub(crate) mod next_step;
 pub(crate) mod nuisance;
-pub(crate) mod nuisances;
 pub(crate) mod parts;
 pub(crate) mod scale;
 pub(crate) mod segments;

@@ -1,7 +1,9 @@
 //! What was estimated beside the tensor, and what errors of the sensor would do to the moments.
 
 use crate::columns::column::Column;
+use crate::report::differing::Differing;
 use crate::settings::torque::TorqueModel;
+use crate::solve::weak_estimate::WeakEstimate;
 
 /// A number that was estimated beside the tensor.
 #[non_exhaustive]
@@ -34,6 +36,29 @@ impl Nuisance {
             column: *column,
         }
     }
+}
+
+/// The unknowns beside the tensor at `values`, with deviations for residuals of `variance` and for what parts of the record differ in, or
+/// those of `held` by number.
+pub(crate) fn nuisances(
+    weak: &WeakEstimate,
+    values: &[f64],
+    variance: f64,
+    rms: f64,
+    held: &[(usize, f64)],
+    differing: Option<&Differing>,
+) -> Vec<Nuisance> {
+    let Some(factor) = weak.stacked.as_ref().and_then(|stacked| stacked.joint_factor()) else {
+        return Vec::new();
+    };
+    let each = weak.columns.iter().zip(values).enumerate();
+    each.map(|(k, (column, value))| {
+        let own = held.iter().find(|(place, _)| *place == k).map(|(_, sigma)| *sigma);
+        let more = differing.map_or(0.0, |differing| differing.variance(k));
+        let sigma = own.unwrap_or_else(|| (factor.row(k).norm_squared() * variance + more).sqrt());
+        Nuisance::new(column, *value, sigma, rms)
+    })
+    .collect()
 }
 
 /// The torque that a fit reckons with.
@@ -87,32 +112,33 @@ pub struct Agreement {
     pub dof: usize,
 }
 
-/// One segment of a record in a fit, or a part of one between bursts of eight samples and more that were left out.
-#[non_exhaustive]
-#[derive(Clone, Debug, PartialEq)]
-pub struct SegmentSummary {
-    /// Index of the segment in the record.
-    pub segment: usize,
-    /// Samples that were used.
-    pub samples: usize,
-    /// Noise of one component of its rates, rad/s.
-    pub noise_sigma: f64,
-    /// Power spectral density of the angular acceleration that its torque noise makes, the mean of the three components, (rad/s²)² s.
-    pub torque_noise: f64,
-    /// Its share of the information about the tensor: the shares of all segments sum to 1.
-    pub weight: f64,
-    /// The answer by the other segments; `None` where they do not determine the tensor.
-    pub without: Option<WithoutSegment>,
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::columns::column::Unknowns;
+    use crate::columns::drag::Drag;
+    use crate::columns::offset::Offset;
+    use crate::columns::scale::Scale;
+    use crate::physical::coordinates::Coordinates;
+    use crate::solve::weak_estimate::tests::one_row_each;
 
-/// The answer by all segments but one, of the record alone: before a prior, the physical law and limits, and with wheels by the weak form.
-#[non_exhaustive]
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WithoutSegment {
-    /// I₁/I₃ and I₂/I₃.
-    pub ratios: [f64; 2],
-    /// Their standard deviations.
-    pub sigma_ratios: [f64; 2],
-    /// Distance from the tensor by all segments, in standard deviations of that.
-    pub shift: f64,
+    /// Of an unknown that is told with a weight the deviation is that of the noise over it, in the unit of the report; one that a wall holds has
+    /// its own.
+    #[test]
+    fn an_unknown_has_the_deviation_of_its_weight() {
+        let columns = [Column::new(Drag, None), Column::new(Offset(1), None), Column::new(Scale, None)];
+        let at = Unknowns::at(Coordinates::zeros(), &columns);
+        let weights = [10.0, 20.0, 40.0, 1.0, 1.0, 1.0, 1.0, 1.0];
+        let mut weak = WeakEstimate::of_rows(&columns, &at, vec![one_row_each(&weights, &[0.0; 8])], 0.5);
+        let found = nuisances(&weak, &[0.1, 0.2, 0.3], 0.25, 4.0, &[(2, 0.75)], None);
+        let expected = [("drag", 0.4, 0.2), ("offset_y", 0.8, 0.1), ("scale", 0.3, 0.75)];
+        assert_eq!(found.len(), 3);
+        for (found, (name, value, sigma)) in found.iter().zip(expected) {
+            assert_eq!(found.name, name);
+            assert!((found.value / value - 1.0).abs() < 1e-12, "{name}: {}", found.value);
+            assert!((found.sigma / sigma - 1.0).abs() < 1e-6, "{name}: {}", found.sigma);
+        }
+        weak.stacked = None;
+        assert!(nuisances(&weak, &[0.1, 0.2, 0.3], 0.25, 4.0, &[], None).is_empty());
+    }
 }

@@ -4,11 +4,40 @@ use nalgebra::Matrix3;
 
 use crate::physical::coordinates::{Coordinates, Form};
 use crate::report::answer::ratios_of;
-use crate::report::nuisance::{SegmentSummary, WithoutSegment};
 use crate::signal::covariance::{Levels, acceleration_density};
 use crate::signal::stretch::Stretch;
 use crate::solve::stacked::Stacked;
 use crate::solve::weak_estimate::{Part, WeakEstimate};
+
+/// One segment of a record in a fit, or a part of one between bursts of eight samples and more that were left out.
+#[non_exhaustive]
+#[derive(Clone, Debug, PartialEq)]
+pub struct SegmentSummary {
+    /// Index of the segment in the record.
+    pub segment: usize,
+    /// Samples that were used.
+    pub samples: usize,
+    /// Noise of one component of its rates, rad/s.
+    pub noise_sigma: f64,
+    /// Power spectral density of the angular acceleration that its torque noise makes, the mean of the three components, (rad/s²)² s.
+    pub torque_noise: f64,
+    /// Its share of the information about the tensor: the shares of all segments sum to 1.
+    pub weight: f64,
+    /// The answer by the other segments; `None` where they do not determine the tensor.
+    pub without: Option<WithoutSegment>,
+}
+
+/// The answer by all segments but one, of the record alone: before a prior, the physical law and limits, and with wheels by the weak form.
+#[non_exhaustive]
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WithoutSegment {
+    /// I₁/I₃ and I₂/I₃.
+    pub ratios: [f64; 2],
+    /// Their standard deviations.
+    pub sigma_ratios: [f64; 2],
+    /// Distance from the tensor by all segments, in standard deviations of that.
+    pub shift: f64,
+}
 
 /// A segment, and what the others say.
 pub(crate) struct Summary {
