@@ -27,7 +27,7 @@ use crate::report::mirror::reversed;
 use crate::report::nuisance::Agreement;
 use crate::report::parts::scatter;
 use crate::report::segments::{Summary, summaries};
-use crate::report::sensor::{ROTOR, Suspect, suspect};
+use crate::report::suspect::{ROTOR, Suspect, suspect};
 use crate::report::systematic::errors;
 use crate::report::warnings::{has_zero_inputs, of_record};
 use crate::settings::Settings;

@@ -7,13 +7,13 @@ mod calibrate;
 mod carrier;
 mod flights;
 mod frames;
-mod inputs;
 mod outputs;
 mod page;
 mod plot;
 mod refusal;
 mod report;
 mod residuals;
+mod wheel;
 
 use std::path::PathBuf;
 
@@ -31,8 +31,8 @@ use as_read::AsRead;
 use attitudes::{Chosen, PoseArguments, Read};
 use carrier::CarrierArguments;
 use flights::Spans;
-use inputs::WheelArguments;
 use outputs::Outputs;
+use wheel::WheelArguments;
 
 const EXAMPLES: &str = "Examples:
   polhode simulate --body phone --omega 1,9,2 --until 5 --every 0.01 \\

@@ -28,7 +28,7 @@ use crate::report::model::{as_well, models, reading_errors};
 use crate::report::nuisance::{Agreement, FittedTorque, Nuisance, nuisances};
 use crate::report::parts::{Scatter, instead, unseen};
 use crate::report::segments::SegmentSummary;
-use crate::report::sensor::{Suspect, refuted};
+use crate::report::suspect::{Suspect, refuted};
 use crate::report::systematic::systematic;
 use crate::report::torque_free::{InvariantTrend, Whiteness, trends};
 use crate::report::warnings::{Grounds, warnings};

@@ -29,7 +29,7 @@ use crate::report::likelihood::{Of, absolute, identify};
 use crate::report::next_step::{Contradiction, NextStep, Origin};
 use crate::report::nuisance::Systematic;
 use crate::report::parts::{Halves, Scatter, instead, quantile, rows_between};
-use crate::report::sensor::{Refuted, Suspect};
+use crate::report::suspect::{Refuted, Suspect};
 use crate::report::torque_free::{InvariantTrend, Memory, Whiteness, memory, trends};
 use crate::report::warning::Warning;
 use crate::report::warnings::{

@@ -14,7 +14,7 @@ use crate::report::attitudes::AttitudeFit;
 use crate::report::differing::Differing;
 use crate::report::estimate::{Estimate, Method};
 use crate::report::parts::{Halves, Scatter, halves};
-use crate::report::sensor::{Refuted, Suspect};
+use crate::report::suspect::{Refuted, Suspect};
 use crate::report::torque_free::{InvariantTrend, blow, memory};
 use crate::report::warning::Warning;
 use crate::settings::torque::TorqueModel;

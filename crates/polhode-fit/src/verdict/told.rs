@@ -5,7 +5,7 @@ use crate::columns::effect::Class;
 use crate::columns::sets::{told_components, torque_columns};
 use crate::columns::wheel_axis::WheelAxis;
 use crate::error::{FitError, ToldComponent};
-use crate::report::sensor::gain_of_told;
+use crate::report::suspect::gain_of_told;
 use crate::settings::torque::TorqueModel;
 use crate::signal::stretch::Stretch;
 use crate::solve::ladder::{Chosen, Demand, climb, likelihood};
