@@ -61,8 +61,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         cells.filter(|&(body, noise)| BODIES[body].2 == 0.0 || NOISES[noise] == SHOWN).collect();
     let parts = cells.iter().flat_map(|&(body, noise)| (0..trials).map(move |k| (body, noise, k))).collect();
     let results = context.in_parallel(parts, |(body, noise, k): (usize, usize, u64)| {
-        // the same motions at each noise, so that columns compare
-        // at every noise the same bodies, starts and deviates
+        // at every noise the same bodies, starts and deviates, so that columns compare
         let stream = ((body as u64) << 32) + k;
         let some = |one_of: u64| BODIES[body].2 == 0.0 && k < trials.div_ceil(one_of).max(2);
         let asked = |rival: Rival| match rival {
