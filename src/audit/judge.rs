@@ -3,6 +3,7 @@
 use core::f64::consts::FRAC_PI_2;
 
 use super::as_written::off_in_space;
+use super::bodies::Told;
 use super::columns::{Columns, Source};
 use super::conservation::conservation;
 use super::detective::Finding;
@@ -19,8 +20,8 @@ use super::signature::signature as signature_of;
 use super::states::{Quantities, states};
 use super::sweep::Allowance;
 use super::{
-    AuditError, Fault, Frame, Judgement, Missing, Noise, Question, Reading, Resolution, Suspect, Tie,
-    TieReason, Trajectory, Verdict,
+    AuditError, Fault, Frame, Judgement, Missing, Noise, OtherBody, OtherTorque, OtherWheel, Question,
+    Reading, Resolution, Signature, Suspect, Tie, TieReason, Trajectory, Verdict,
 };
 use crate::body::{Body, Problem};
 use crate::inertia::Symmetry;
@@ -132,7 +133,7 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
         }
     }
     let claim = broken_claim(&reading, finding, question);
-    let (mut signature, mut other_body, mut other_torque, mut other_wheel) = (None, None, None, None);
+    let mut explained = Explained::default();
     let suspect = match (&finding.mistake, claim) {
         // what noise explains needs no mistake
         (Some(mistake), _) if by_motion == Judgement::Wrong => mistake.suspect.clone(),
@@ -142,24 +143,9 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
             Suspect::Discontinuity
         }
         _ => {
-            other_wheel = told.as_ref().and_then(|told| other_wheel_of(record, &reading, told, &allowances));
-            if other_wheel.is_none() {
-                signature = signature_of(record, &reading, &body, noise);
-            }
-            let is_open = other_wheel.is_none() && signature.is_none();
-            if is_open {
-                other_body = other_body_of(record, question, &allowances);
-            }
-            if is_open && other_body.is_none() {
-                other_torque = other_torque_of(record, &reading, &body, off[0] + off[1], noise);
-            }
-            match (&signature, &other_body, &other_torque) {
-                (Some(found), ..) => Suspect::Integrator(found.method.clone()),
-                (_, Some(_), _) => Suspect::OtherBody,
-                (.., Some(_)) => Suspect::OtherTorque,
-                _ if other_wheel.is_some() => Suspect::OtherWheel,
-                _ => Suspect::None,
-            }
+            let limits = (off[0] + off[1], noise);
+            explained = explanation(record, &reading, &body, question, told.as_ref(), &allowances, limits);
+            explained.suspect()
         }
     };
     let judgement = if suspect == Suspect::None { by_motion } else { Judgement::Wrong };
@@ -200,6 +186,7 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
         (record.rates.is_none() && record.momentum.is_none(), Missing::Rates),
         (question.body.is_none(), Missing::Body),
     ];
+    let Explained { signature, other_body, other_torque, other_wheel } = explained;
     Ok(Verdict {
         judgement,
         suspect,
@@ -221,6 +208,51 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
         missing: missing.into_iter().filter(|(lacks, _)| *lacks).map(|(_, what)| what).collect(),
         traces,
     })
+}
+
+/// What explains a record that is wrong beside mistakes in it: one at most.
+#[derive(Default)]
+struct Explained {
+    signature: Option<Signature>,
+    other_body: Option<OtherBody>,
+    other_torque: Option<OtherTorque>,
+    other_wheel: Option<OtherWheel>,
+}
+
+impl Explained {
+    fn suspect(&self) -> Suspect {
+        match self {
+            Explained { signature: Some(found), .. } => Suspect::Integrator(found.method.clone()),
+            Explained { other_body: Some(_), .. } => Suspect::OtherBody,
+            Explained { other_torque: Some(_), .. } => Suspect::OtherTorque,
+            Explained { other_wheel: Some(_), .. } => Suspect::OtherWheel,
+            _ => Suspect::None,
+        }
+    }
+}
+
+/// The first of them that explains the record; attitude and angular velocity together may be `off`, and have this `noise`.
+fn explanation(
+    record: &Trajectory,
+    reading: &Reading,
+    body: &Body,
+    question: &Question,
+    told: Option<&Told>,
+    allowances: &Allowances,
+    (off, noise): (f64, f64),
+) -> Explained {
+    let other_wheel = told.and_then(|told| other_wheel_of(record, reading, told, allowances));
+    let mut found = Explained { other_wheel, ..Explained::default() };
+    if found.other_wheel.is_none() {
+        found.signature = signature_of(record, reading, body, noise);
+    }
+    if found.suspect() == Suspect::None {
+        found.other_body = other_body_of(record, question, allowances);
+    }
+    if found.suspect() == Suspect::None {
+        found.other_torque = other_torque_of(record, reading, body, off, noise);
+    }
+    found
 }
 
 /// How far the body turns over a window of a record of attitudes alone, typically, rad.
