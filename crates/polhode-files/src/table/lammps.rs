@@ -98,13 +98,13 @@ impl<'t> Dump<'t> {
                 "TIMESTEP" => self.step = Some(self.number()?),
                 "TIME" => self.time = Some(self.number()?),
                 "NUMBER OF ATOMS" | "NUMBER OF ENTRIES" => self.rows = self.number()?.parse().ok(),
-                text if text.starts_with("ATOMS") || text.starts_with("ENTRIES") => {
-                    if self.begin(text, line)? {
+                // others, as the bounds of the box, are of no interest here
+                text => {
+                    let is_block = text.starts_with("ATOMS") || text.starts_with("ENTRIES");
+                    if is_block && self.begin(text, line)? {
                         return Ok(true);
                     }
                 }
-                // bounds of the box: of no interest here
-                _ => {}
             }
         }
         if !self.lines.advance()? {
