@@ -60,7 +60,7 @@ pub fn foreseen_attitude_bound(
     // what is left of the attitudes has no part in the information of small deviations
     let levels = Levels { attitude: 1e3, rate: 1.0 };
     let problem = Problem { tracks: &[track], levels, radius: f64::INFINITY, pull: None };
-    let information = Reduced::new(&problem.sums(&model)?.0, None, 0.0)?.of_tensor()?;
+    let information = Reduced::new(&problem.sums(&model)?.0)?.of_tensor()?;
     let (spectrum, _) = eigen(information);
     if spectrum[0].is_nan() || spectrum[0] <= OPEN * spectrum[4] {
         return None;

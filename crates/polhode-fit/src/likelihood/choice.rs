@@ -102,7 +102,7 @@ fn covariance(followed: &Followed) -> Option<Form> {
     let Followed { model, tracks, levels, .. } = followed;
     let problem = Problem { tracks, levels: *levels, radius: f64::INFINITY, pull: None };
     let (sums, _) = problem.sums(model)?;
-    Some(Reduced::new(&sums, None, 0.0)?.of_tensor()?.cholesky()?.inverse())
+    Some(Reduced::new(&sums)?.of_tensor()?.cholesky()?.inverse())
 }
 
 /// Log-likelihood of a model less that of the free motion.
@@ -170,7 +170,7 @@ pub(crate) fn steady_within_noise(followed: &Followed) -> Option<Form> {
     let (sums, cost) = steady(tracks, model.alignment, *levels)?;
     let problem = Problem { tracks, levels: *levels, radius: f64::INFINITY, pull: None };
     let (_, least) = problem.sums(model)?;
-    (cost - least <= SIGNIFICANT_GAIN).then(|| Reduced::new(&sums, None, 0.0)?.of_tensor()).flatten()
+    (cost - least <= SIGNIFICANT_GAIN).then(|| Reduced::new(&sums)?.of_tensor()).flatten()
 }
 
 #[cfg(test)]

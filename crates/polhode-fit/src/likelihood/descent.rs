@@ -59,7 +59,7 @@ impl Problem<'_> {
         let (mut damping, mut is_still, mut before) = (0.0, false, cost);
         for count in 1..=STEPS {
             let pull = self.pull.as_ref().map(|pull| (pull, &model));
-            let step = Reduced::new(&sums, pull, damping).and_then(|reduced| reduced.step());
+            let step = Reduced::damped(&sums, pull, damping).and_then(|reduced| reduced.step());
             // a short step that is damped tells of no bottom
             is_still = damping == 0.0 && step.as_ref().is_some_and(|step| step.gain < STILL);
             let next = step.map(|step| moved(&model, &step));
@@ -165,7 +165,7 @@ mod tests {
         let levels = Levels { attitude: 1.0, rate: 0.1 };
         let problem = |pull| Problem { tracks: &tracks, levels, radius: f64::INFINITY, pull };
         let (sums, cost) = problem(None).sums(&model).unwrap();
-        let form = Reduced::new(&sums, None, 0.0).unwrap().of_tensor().unwrap();
+        let form = Reduced::new(&sums).unwrap().of_tensor().unwrap();
         assert!(cost == 0.0 && problem(None).settle(model.clone()).unwrap().is_still);
         // along the direction of which the readings tell least the information is half of theirs, or as much below zero
         for (share, is_still) in [(0.5, true), (2.0, false)] {

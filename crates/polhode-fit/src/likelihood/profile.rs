@@ -24,7 +24,7 @@ pub(crate) enum Profile {
 /// The profile about `model`, at which `problem` is least; `None` where the samples do not determine it.
 pub(crate) fn profile(problem: &Problem<'_>, model: &Model) -> Option<Profile> {
     let (sums, least) = problem.sums(model)?;
-    let form = Reduced::new(&sums, None, 0.0)?.of_tensor()?;
+    let form = Reduced::new(&sums)?.of_tensor()?;
     let (values, directions) = eigen(form);
     let deviation = |k: usize| 1.0 / values[k].sqrt();
     let mut each = Vec::new();
@@ -48,7 +48,7 @@ pub(crate) fn profile(problem: &Problem<'_>, model: &Model) -> Option<Profile> {
 /// The fall of twice the log-likelihood from `model` to the tensor `x`, all else at its best; `None` where there is no motion.
 pub(crate) fn fall(problem: &Problem<'_>, model: &Model, x: &Coordinates) -> Option<f64> {
     let (sums, least) = problem.sums(model)?;
-    let reduced = Reduced::new(&sums, None, 0.0)?;
+    let reduced = Reduced::new(&sums)?;
     let information = Form::identity() * (FIXED * eigen(reduced.of_tensor()?).0[4]);
     let pull = Some(Pull { information, centre: *x, drag: 0.0 });
     let held = Problem { pull, ..*problem }.settle(moved(model, &reduced.following(&(x - model.x))?))?;
@@ -105,7 +105,7 @@ impl Walk<'_> {
         let at = self.model.x + self.direction * distance;
         let unit = self.direction.normalize();
         let (sums, _) = self.problem.sums(from)?;
-        let step = Reduced::new(&sums, None, 0.0)?.following(&(unit * unit.dot(&(at - from.x))))?;
+        let step = Reduced::new(&sums)?.following(&(unit * unit.dot(&(at - from.x))))?;
         let information = unit * unit.transpose() * (FIXED * self.information);
         let pull = Some(Pull { information, centre: at, drag: 0.0 });
         let model = Problem { pull, ..*self.problem }.settle(moved(from, &step))?.model;
@@ -160,7 +160,7 @@ mod tests {
         let (tracks, levels) = (&found.tracks[..], found.levels);
         let problem = Problem { tracks, levels, radius: f64::INFINITY, pull: None };
         let (sums, cost) = problem.sums(&found.model).unwrap();
-        let form = Reduced::new(&sums, None, 0.0).unwrap().of_tensor().unwrap();
+        let form = Reduced::new(&sums).unwrap().of_tensor().unwrap();
         let (values, directions) = eigen(form);
         let direction = directions.column(0) / values[0].sqrt();
         let walk = |raised: f64| {

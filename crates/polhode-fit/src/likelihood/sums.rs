@@ -68,8 +68,13 @@ impl Pull {
 }
 
 impl Reduced {
-    /// `None` where a start is not determined.
-    pub(crate) fn new(all: &[Sums], pull: Option<(&Pull, &Model)>, damping: f64) -> Option<Reduced> {
+    /// Of readings alone. `None` where a start is not determined.
+    pub(crate) fn new(all: &[Sums]) -> Option<Reduced> {
+        Reduced::damped(all, None, 0.0)
+    }
+
+    /// With a pull at a model, and with damped squares of the readings.
+    pub(crate) fn damped(all: &[Sums], pull: Option<(&Pull, &Model)>, damping: f64) -> Option<Reduced> {
         let mut information = SMatrix::<f64, COMMON, COMMON>::zeros();
         let mut gradient = SVector::<f64, COMMON>::zeros();
         let mut starts = Vec::with_capacity(all.len());
@@ -204,7 +209,7 @@ mod tests {
         let first = 2 * OWN;
         for damping in [0.0, 0.3] {
             let (matrix, gradient) = whole(&all, damping);
-            let reduced = Reduced::new(&all, None, damping).unwrap();
+            let reduced = Reduced::damped(&all, None, damping).unwrap();
             let (step, expected) =
                 (reduced.step().unwrap(), matrix.clone().cholesky().unwrap().solve(&gradient));
             let found =
@@ -262,7 +267,7 @@ mod tests {
                 gradient[last] -= 7.0 * drag;
             }
             let expected = matrix.cholesky().unwrap().solve(&gradient);
-            let found = Reduced::new(&all, Some((&pull, &at)), 0.0).unwrap().step().unwrap();
+            let found = Reduced::damped(&all, Some((&pull, &at)), 0.0).unwrap().step().unwrap();
             assert!(
                 (DVector::from_column_slice(found.common.as_slice()) - expected.rows(2 * OWN, COMMON)).amax()
                     < 1e-9
@@ -278,7 +283,7 @@ mod tests {
     fn unknowns_of_no_reading_stay_where_they_are() {
         for zeros in [0..3, OWN + 5..OWN + 8, ALL - 1..ALL] {
             let all = stretches(zeros.clone());
-            let step = Reduced::new(&all, None, 0.0).unwrap().step().unwrap();
+            let step = Reduced::new(&all).unwrap().step().unwrap();
             let (matrix, gradient) = whole(&all, 0.0);
             let kept: Vec<usize> = (0..matrix.nrows()).filter(|k| matrix[(*k, *k)] > 0.0).collect();
             let own = DMatrix::from_fn(kept.len(), kept.len(), |i, k| matrix[(kept[i], kept[k])]);

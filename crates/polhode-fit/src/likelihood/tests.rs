@@ -61,7 +61,7 @@ fn found(tracks: &[Track], has_drag: bool) -> Followed {
 fn information(followed: &Followed) -> SMatrix<f64, 5, 5> {
     let Followed { model, tracks, levels, .. } = followed;
     let problem = Problem { tracks, levels: *levels, radius: f64::INFINITY, pull: None };
-    Reduced::new(&problem.sums(model).unwrap().0, None, 0.0).unwrap().of_tensor().unwrap()
+    Reduced::new(&problem.sums(model).unwrap().0).unwrap().of_tensor().unwrap()
 }
 
 /// What is left of readings falls by the rows of their derivatives.

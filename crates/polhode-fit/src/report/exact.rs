@@ -179,7 +179,7 @@ fn information(settings: &Settings, free: &Free) -> Result<Information, FitError
     let problem = Problem { tracks: &free.followed.tracks, levels, radius: f64::INFINITY, pull: None };
     let singular = || FitError::Solver(SolverFailure::Information);
     let (sums, _) = problem.sums(&free.followed.model).ok_or_else(singular)?;
-    let all = Reduced::new(&sums, None, 0.0).ok_or_else(singular)?;
+    let all = Reduced::new(&sums).ok_or_else(singular)?;
     let mut tensor = all.of_tensor().ok_or_else(singular)?;
     let (mut moved, mut torques) = (Coordinates::zeros(), Vec::new());
     let constant = free.alternatives.as_ref().filter(|_| free.torque == Acting::Constant);
@@ -293,12 +293,12 @@ fn summaries(free: &Free, information: &Information) -> Vec<SegmentSummary> {
     let inverse = total.cholesky().map(|c| c.inverse());
     let all = information.all.of_tensor().and_then(|all| Some(all.cholesky()?.inverse()));
     let each = free.read.used.iter().enumerate().map(|(k, &(segment, _))| {
-        let own = Reduced::new(&information.sums[k..=k], None, 0.0).and_then(|own| own.of_tensor());
+        let own = Reduced::new(&information.sums[k..=k]).and_then(|own| own.of_tensor());
         let weight = own.zip(inverse).map_or(0.0, |(own, inverse)| (inverse * own).trace() / 5.0);
         let others = || {
             let sums = &information.sums;
             let rest: Vec<Sums> = sums[..k].iter().chain(&sums[k + 1..]).cloned().collect();
-            let rest = Reduced::new(&rest, None, 0.0).filter(|_| sums.len() > 1)?;
+            let rest = Reduced::new(&rest).filter(|_| sums.len() > 1)?;
             let own = rest.of_tensor()?.cholesky()?;
             let step = own.solve(&rest.gradient_of_tensor()?);
             let covariance = own.inverse() + (inverse? - all?);
