@@ -574,6 +574,30 @@ mod tests {
         assert!((second.log_determinant / more - 1.0).abs() < 1e-9, "{}", second.log_determinant);
     }
 
+    /// By the sphere as a tensor the first equations of a stretch are left what a sphere leaves of them, which is no gain, and by the body that moves
+    /// next to nothing. Where they have no test function nothing is gained either.
+    #[test]
+    fn the_first_equations_tell_the_body_from_a_sphere() {
+        // a quarter of the samples ends where a test function of the whole does
+        let times: Vec<f64> = (0..206).map(|k| 0.1 * f64::from(k)).collect();
+        let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+        let rates = simulate(&body, Vector3::new(0.5, 0.8, -0.4), &times, 0.0, &mut Random::new(3)).unwrap();
+        let stretches = [Stretch::new(times, rates)];
+        // the gain, and what the tensor leaves of three equations for each of 4 (5 − 2) + 1 test functions
+        let of = |x: Coordinates, radius: f64| {
+            let rounds = Rounds::new(&stretches, radius, &[], Unknowns { x, c: Vec::new() }).unwrap();
+            let (_, whitened) = rounds.whiten().unwrap();
+            let part = whitened[0].rows.chunks_exact(6).take(39);
+            (rounds.gain_of_part(&whitened, 1e-4), part.map(|row| row[5] * row[5]).sum::<f64>())
+        };
+        let (none, of_sphere) = of(Coordinates::zeros(), 1.0);
+        assert!(none.abs() < 0.05 * of_sphere, "{none:e} {of_sphere:e}");
+        let (gain, of_body) = of(moments(1.0 / 5.6, 2.0 / 5.6, 2.6 / 5.6), 1.0);
+        assert!((gain / of_sphere - 1.0).abs() < 0.05, "{gain:e} {of_sphere:e}");
+        assert!(of_body < 1e-3 * of_sphere, "{of_body:e} {of_sphere:e}");
+        assert_eq!(of(Coordinates::zeros(), 3.0).0, 0.0);
+    }
+
     fn moments(a: f64, b: f64, c: f64) -> Coordinates {
         coordinates(&Matrix3::from_diagonal(&Vector3::new(a, b, c)))
     }
