@@ -360,7 +360,10 @@ mod tests {
     use super::*;
     use crate::columns::column::Unknowns;
     use crate::physical::coordinates::{Form, coordinates};
+    use crate::simulate::{Disturbances, Gyroscope, simulate_with};
     use nalgebra::{Matrix3, Vector3};
+    use polhode::inertia::Inertia;
+    use polhode::num::Random;
 
     /// A largest share of 0.7 is 0.2 above what a body has, and the nearest body takes a tenth of it to each of the others: 0.06 in squares.
     #[test]
@@ -388,5 +391,33 @@ mod tests {
         assert_eq!(of([0.2, 0.35, 0.45]), 0.0);
         let loss = of([0.05, 0.25, 0.7]);
         assert!((loss / (0.5 * 0.06 * 1e4 / 0.25) - 1.0).abs() < 1e-9, "{loss}");
+    }
+
+    /// In a record that is not long a constant torque is tried wherever the equations promise its gain, also where a drag explains far more: of two that
+    /// spin against each other and a third it explains only what they share.
+    #[test]
+    fn a_constant_torque_is_tried_beside_a_larger_drag() {
+        let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+        let times: Vec<f64> = (0..200).map(|k| 0.1 * f64::from(k)).collect();
+        let (by, sigma) = (Disturbances::default().with_relative_drag(7e-4), 5e-3);
+        let (gyroscope, mut random) = (Gyroscope::default().with_noise(sigma), Random::new(3));
+        let starts = [[0.3, 0.2, 0.9], [0.3, 0.2, -0.9], [0.2, -0.3, 0.9]].map(Vector3::from);
+        let stretches: Vec<Stretch> = starts
+            .iter()
+            .enumerate()
+            .map(|(k, start)| {
+                let rates = simulate_with(&body, *start, &times, &by, &gyroscope, &mut random).unwrap();
+                Stretch { index: k, segment: k, ..Stretch::new(times.clone(), rates) }
+            })
+            .collect();
+        let (torque, noise) = (TorqueModel::Auto, Noise::White);
+        let demand = Demand { radius: Some(1.0), torque, noise, columns: &[], errors: &[], rms: 1.0 };
+        let ladder = Ladder { stretches: &stretches, demand, variance: sigma * sigma };
+        let chosen = ladder.highest(None).ok().unwrap();
+        let gain = |model: TorqueModel| {
+            chosen.models.iter().find(|one| one.is_torque(model)).map_or(f64::NAN, |one| one.gain)
+        };
+        let (drag, constant) = (gain(TorqueModel::Drag), gain(TorqueModel::Constant));
+        assert!(constant.is_finite() && drag > 2.0 * constant, "{drag} {constant}");
     }
 }
