@@ -147,6 +147,9 @@ fn explains(tracks: &[Track], level: f64) -> bool {
 mod tests {
     use super::*;
     use crate::settings::sensor::SensorPriors;
+    use crate::simulate::simulate;
+    use polhode::inertia::Inertia;
+    use polhode::num::Random;
 
     /// Of samples a second apart that turn by so much until the next.
     fn turning(turns: &[f64]) -> Segment {
@@ -192,6 +195,23 @@ mod tests {
         assert!(!is(plain().with_sensor(SensorPriors::default().with_skew(1e-3))));
         let wheel = turning(&[0.7, 0.7]).with_wheel(vec![Vector3::z(); 2]).unwrap();
         assert!(!is_plain(&of(vec![turning(&[0.7, 0.7]), wheel]), &plain()));
+    }
+
+    /// A unit of time that is a power of two smaller changes no bit of the shape and of its deviations, and a noise that is given goes with it.
+    #[test]
+    fn sparse_rates_say_the_same_in_any_unit_of_time() {
+        let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+        let times: Vec<f64> = (0..124).map(|k| 0.65 * f64::from(k)).collect();
+        let rates = simulate(&body, Vector3::new(0.3, 1.0, 0.4), &times, 0.01, &mut Random::new(8)).unwrap();
+        let told = |times_faster: f64| {
+            let own_times = times.iter().map(|t| t / times_faster).collect();
+            let own_rates = rates.iter().map(|w| w * times_faster).collect();
+            let record = of(vec![Segment::new("a", own_times, own_rates).unwrap()]);
+            explained(&record, &Settings::default().with_noise(0.01 * times_faster)).unwrap()
+        };
+        let (own, other) = (told(1.0), told(1024.0));
+        assert_eq!((own.principal, own.sigma_principal), (other.principal, other.sigma_principal));
+        assert_eq!((own.rms_rate * 1024.0, own.noise_sigma * 1024.0), (other.rms_rate, other.noise_sigma));
     }
 
     /// A step q of readings that all differ is noise of variance q²/12: beside a noise that is given, and where the motion leaves less.

@@ -227,6 +227,19 @@ mod tests {
         assert!(matches!(none, Err(NoConsensus { least: None })));
     }
 
+    /// Shaken about all axes alike for five minutes, a body passes for a sphere that no window of it agrees with; however many such windows there
+    /// are, it is those that agree with their own tensor that propose one.
+    #[test]
+    fn windows_that_agree_with_no_tensor_propose_none() {
+        let times: Vec<f64> = (0..6000).map(|k| 0.05 * f64::from(k)).collect();
+        let shaken = |t: f64| [(3.0, 0.0), (3.7, 1.0), (4.3, 2.0)].map(|(w, phase)| libm::sin(w * t + phase));
+        let rates: Vec<Vector3<f64>> = times.iter().map(|t| Vector3::from(shaken(*t))).collect();
+        let all = [tests(&Stretch::new(times, rates), 1.0), recording(0.0)];
+        let Ok(found) = consensus(&all, 1.0, 1e-8) else { panic!() };
+        assert!((found.x - coordinates(&body())).norm() < 0.02, "{}", found.x);
+        assert!(!found.free[0].contains(&true) && !found.free[1].contains(&false), "{:?}", found.free);
+    }
+
     /// Four tests in a row contradict a free body, three and those of two stretches do not; shares are of the tests that turn.
     #[test]
     fn a_contradiction_lasts_for_four_tests() {
