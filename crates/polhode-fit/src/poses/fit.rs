@@ -295,7 +295,10 @@ mod tests {
     use crate::likelihood::track::Model;
     use crate::physical::coordinates::coordinates;
     use crate::settings::sensor::SensorPriors;
+    use crate::simulate::{Disturbances, Gyroscope, simulate_poses};
     use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+    use polhode::inertia::Inertia;
+    use polhode::num::Random;
     use polhode::rotation::Quat;
 
     /// A density (rad/s²)² s is over the third power of the unit of the rates; the noise of attitudes is an angle.
@@ -373,6 +376,28 @@ mod tests {
             has_rates: false,
         };
         Free::of(followed, read)
+    }
+
+    /// Attitudes that were stated the wrong way round follow no free motion; the closed form finds that of the other direction, with its tensor, before
+    /// any filter is asked.
+    #[test]
+    fn the_closed_form_tells_a_direction_that_is_wrong() {
+        let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
+        let times: Vec<f64> = (0..200).map(|k| 0.1 * f64::from(k)).collect();
+        let (none, perfect, start) =
+            (Disturbances::default(), Gyroscope::default(), Vector3::new(0.5, 0.8, -0.4));
+        let made = simulate_poses(&body, start, &times, &none, &perfect, 5e-3, &mut Random::new(9)).unwrap();
+        let poses = Poses::new("a", &times, &made.attitudes).unwrap();
+        let settings = Settings::default().with_torque(TorqueModel::None);
+        let settings = settings.with_torque_noise(TorqueNoise::None);
+        let right = by_exact_motion(&poses, &settings).unwrap();
+        match by_exact_motion(&poses.inverse(), &settings) {
+            Err(FitError::Poses(PoseFault::Inverted { inverse, gain })) => {
+                let apart = inverse.iter().zip(right.principal).map(|(a, b)| (a - b).abs());
+                assert!(apart.fold(0.0, f64::max) < 1e-9 && gain > 100.0, "{inverse:?} {gain}");
+            }
+            other => panic!("{:?}", other.err()),
+        }
     }
 
     /// One of ten numbers that leaves e times as much is less likely by ten. What the noise does not explain, which is given or told by

@@ -382,7 +382,8 @@ mod tests {
         assert!((found - expected).amax() < 1e-14, "{found}");
     }
 
-    /// Rates in units of less than 1.25 times those of the attitudes, or over 1.25, are of another size beyond that.
+    /// Rates in units of less than 1.25 times those of the attitudes, or over 1.25, are of another size beyond that, and rates of nothing have no
+    /// axes.
     #[test]
     fn rates_of_another_size_are_refused() {
         let rates = [Vector3::x(), Vector3::y(), Vector3::z()];
@@ -405,6 +406,7 @@ mod tests {
         }
         let Err(FitError::Poses(fault)) = of(-1.0) else { panic!() };
         assert_eq!(fault, PoseFault::Mirrored);
+        assert_eq!(of(0.0).err(), Some(FitError::NoRotation { rms: 0.0, noise: 0.0 }));
         assert!(alignment_of(&nodes, &stretches, &[Vec::new()], 0.1).unwrap().is_none());
     }
 
