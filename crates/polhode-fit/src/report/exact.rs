@@ -370,10 +370,11 @@ mod tests {
     use crate::likelihood::track::Model;
     use crate::physical::certificate::Certificate;
     use crate::physical::constraint::{ActiveConstraint, Constraint};
-    use crate::physical::coordinates::coordinates;
+    use crate::physical::coordinates::{ENTRIES, coordinates};
     use crate::poses::free::Read;
     use crate::poses::misread::Misread;
     use crate::poses::moving::Moving;
+    use crate::report::answer::ratios_of;
     use polhode::rotation::Vec3;
 
     /// Where a body is that tumbles about the middle of the third segment, at 5 s; samples are off by this rotation vector or rate, and the second is
@@ -413,6 +414,101 @@ mod tests {
         };
         let (torque, gain, without) = (Acting::Drag, Some(7.0), Some(x));
         Free { torque, gain, without, ..Free::of(followed, read) }
+    }
+
+    /// The same with a second segment, the fifth of the record, of a body that turns at this rate in its middle.
+    fn and_again(mut free: Free, x: Coordinates, rate: Vector3<f64>) -> Free {
+        let (first, start) = (&free.followed.tracks[0], Start { attitude: Quat::identity(), rate });
+        let motion = Model { x, ..free.followed.model.clone() }.motion(&start).unwrap();
+        let (times, used, has_attitudes) = (first.times.clone(), first.used.clone(), first.has_attitudes());
+        let (mut attitudes, mut rates) = (Vec::new(), Vec::new());
+        for moved in times.iter().map(|t| motion.at(*t).unwrap()) {
+            if has_attitudes {
+                attitudes.push(moved.attitude);
+            } else {
+                rates.push(moved.rate);
+            }
+        }
+        free.followed.tracks.push(Track { times, attitudes, rates, used });
+        free.followed.model.starts.push(start);
+        free.read.used.push((4, 9.0));
+        free
+    }
+
+    /// 101 samples about the middle of a segment.
+    fn ten() -> Vec<f64> {
+        (0..=100).map(|k| 0.1 * f64::from(k) - 5.0).collect()
+    }
+
+    /// Of two segments alike each has half of the information, and without one of them variances are twice as large about the same tensor. Of two
+    /// that differ the other says its own.
+    #[test]
+    fn without_one_of_two_segments_the_tensor_is_that_of_the_other() {
+        let settings = Settings::default().with_torque(TorqueModel::None);
+        let of = |moments: [f64; 3]| {
+            let x = coordinates(&Matrix3::from_diagonal(&Vector3::from(moments)));
+            let free = tumbling(ten(), true, Vector3::zeros());
+            let free = and_again(free, x, Vector3::new(0.3, 1.0, -0.4));
+            let information = information(&settings, &free).unwrap();
+            let found = summaries(&free, &information);
+            (found, ratios_of(&x, &information.tensor.try_inverse().unwrap()))
+        };
+        let (alike, both) = of([0.25, 0.35, 0.4]);
+        for (own, segment) in alike.iter().zip([2, 4]) {
+            // the second sample is not used
+            assert_eq!((own.segment, own.samples, own.noise_sigma), (segment, 100, 0.0));
+            assert!((own.weight - 0.5).abs() < 1e-9, "{}", own.weight);
+            let without = own.without.unwrap();
+            assert!(without.shift < 1e-6, "{:e}", without.shift);
+            for (k, (ratio, sigma)) in both.into_iter().enumerate() {
+                assert!((without.ratios[k] - ratio).abs() < 1e-9, "{k}: {}", without.ratios[k]);
+                let times = without.sigma_ratios[k] / sigma;
+                assert!((times / core::f64::consts::SQRT_2 - 1.0).abs() < 1e-6, "{k}: {times}");
+            }
+        }
+        let (differ, other) = of([0.25002, 0.35002, 0.39996]);
+        let [of_second, of_first] = [0, 1].map(|k: usize| differ[k].without.unwrap().ratios);
+        for k in 0..2 {
+            let apart = (other[k].0 - both[k].0).abs();
+            assert!((of_second[k] - other[k].0).abs() < 0.02 * apart, "{k}: {} {}", of_second[k], other[k].0);
+            assert!((of_first[k] - both[k].0).abs() < 0.02 * apart, "{k}: {} {}", of_first[k], both[k].0);
+        }
+    }
+
+    /// A size by the energy of a motion has the noise of what the motion was fitted to: of attitudes none beside that of the shape, so that the
+    /// energy stays as it is known; of rates none of a straight line through turns, so that energies of a tenth apart contradict each other.
+    #[test]
+    fn a_size_has_the_noise_of_its_readings_alone() {
+        let settings = Settings::default().with_torque(TorqueModel::None).with_known(Known::TwiceEnergy(3.0));
+        let told = Told { is_inverse: false, gain: None };
+        let quiet = |has_attitudes: bool| {
+            let mut free = tumbling(ten(), has_attitudes, Vector3::zeros());
+            (free.torque, free.gain, free.without) = (Acting::Nothing, None, None);
+            free.followed.levels = Levels { attitude: 1e-3, rate: 1e-3 };
+            free
+        };
+        let free = quiet(true);
+        let covariance = report(0, &settings, &free, told).unwrap().inertia_covariance.unwrap();
+        let rates = fitted_rates(&free);
+        let scatter = rates[0].rates.iter().map(|w| w * w.transpose()).sum::<Matrix3<f64>>();
+        // Σ ω·J ω by the entries of J, of which the products come twice
+        let by_entries = SMatrix::<f64, 6, 1>::from_fn(|k, _| {
+            let (a, b) = ENTRIES[k];
+            if a == b { scatter[(a, b)] } else { 2.0 * scatter[(a, b)] }
+        });
+        let variance = by_entries.dot(&(covariance * by_entries));
+        let most = by_entries.norm_squared() * covariance.amax();
+        assert!(variance.abs() < 1e-9 * most && most > 0.0, "{variance:e} {most:e}");
+
+        let free = quiet(false);
+        let x = free.followed.model.x;
+        let free = and_again(free, x, Vector3::new(0.3, 1.0, -0.4) * 1.05);
+        match report(0, &settings, &free, told) {
+            Err(FitError::SizeDiffers { factor, largest: 4, smallest: 2, .. }) => {
+                assert!((factor / (1.05 * 1.05) - 1.0).abs() < 0.02, "{factor}");
+            }
+            other => panic!("{:?}", other.err()),
+        }
     }
 
     /// Attitudes that are 0.03 rad off are three deviations of a hundredth off, and rates by 0.5 two of a quarter; only samples that are used count, at

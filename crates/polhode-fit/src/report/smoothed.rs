@@ -236,6 +236,7 @@ mod tests {
 
     use crate::likelihood::track::Track;
     use crate::physical::coordinates::{Coordinates, tensor};
+    use crate::report::answer::ratios_of;
     use crate::report::parts::quantile;
     use crate::report::warning::Warning;
     use crate::settings::torque::TorqueNoise;
@@ -337,13 +338,8 @@ mod tests {
         Chosen { found, model: chosen.model, gain: chosen.gain, without: chosen.without, models: Vec::new() }
     }
 
-    /// A noise that is stated as half of what the motion leaves changes nothing but the misfit, which enlarges all deviations by as much; one that
-    /// is stated as twice that is believed, and deviations are twice as large. What is left of the attitudes is the same.
-    #[test]
-    fn a_stated_noise_is_enlarged_by_what_it_does_not_explain() {
-        let chosen = searched();
-        let sigma = chosen.found.variance.sqrt();
-        let read = Read {
+    fn read() -> Read {
+        Read {
             unit: 2.0,
             used: vec![(0, 1.0), (2, 9.0)],
             local_noise: None,
@@ -351,7 +347,39 @@ mod tests {
             largest_turn: 0.2,
             jumps: 4,
             has_rates: false,
-        };
+        }
+    }
+
+    /// Without a segment the tensor is a step from that of all, and its covariance is that of the others, enlarged by what the noise does not explain,
+    /// with what the choice of a torque adds; shares of the information sum to 1.
+    #[test]
+    fn without_a_segment_the_tensor_is_a_step_away() {
+        let mut chosen = searched();
+        let step = Coordinates::new(0.01, -0.02, 0.005, 0.01, -0.015);
+        let covariance = Form::identity() * 1e-4;
+        let of_choice = Form::from_diagonal(&Coordinates::new(1e-5, 2e-5, 3e-5, 4e-5, 5e-5));
+        chosen.found.without = vec![Some((step, covariance)), None];
+        chosen.found.of_each = vec![Form::identity() * 3.0, Form::identity()];
+        let found = summaries(&chosen, &read(), &(Form::identity() * 4.0), (4.0, of_choice), 0.5);
+        let [first, second] = &found[..] else { panic!("{found:?}") };
+        let own = first.without.unwrap();
+        let expected = ratios_of(&(chosen.found.at.x + step), &(covariance * 4.0 + of_choice));
+        for (k, (ratio, sigma)) in expected.into_iter().enumerate() {
+            assert!((own.ratios[k] / ratio - 1.0).abs() < 1e-12, "{k}: {}", own.ratios[k]);
+            assert!((own.sigma_ratios[k] / sigma - 1.0).abs() < 1e-9, "{k}: {}", own.sigma_ratios[k]);
+        }
+        assert!((own.shift / (2.0 * step.norm()) - 1.0).abs() < 1e-12, "{}", own.shift);
+        assert!(second.without.is_none() && (first.torque_noise, second.torque_noise) == (0.5, 0.5));
+        assert!((first.weight - 0.75).abs() < 1e-12 && (second.weight - 0.25).abs() < 1e-12, "{found:?}");
+    }
+
+    /// A noise that is stated as half of what the motion leaves changes nothing but the misfit, which enlarges all deviations by as much; one that
+    /// is stated as twice that is believed, and deviations are twice as large. What is left of the attitudes is the same.
+    #[test]
+    fn a_stated_noise_is_enlarged_by_what_it_does_not_explain() {
+        let chosen = searched();
+        let sigma = chosen.found.variance.sqrt();
+        let read = read();
         let of = |times: f64| {
             let settings =
                 Settings::default().with_torque(TorqueModel::None).with_attitude_noise(times * sigma);

@@ -487,6 +487,22 @@ fn the_weakest_combination_is_the_one_of_the_largest_deviation() {
     assert!(!e.next_steps().iter().any(|step| matches!(step, NextStep::OtherStart { .. })));
 }
 
+/// Under torques at random, however weak, no start is foreseen; without them the one of an even rate is.
+#[test]
+fn torque_noise_leaves_no_start_to_foresee() {
+    let mut e = clean();
+    e.sigma_axes = [f64::INFINITY, 0.0, 0.1];
+    e.identifiability.deviations = [1e-4, 2e-4, 2e-4, 2e-4, 1.1e-3];
+    for (torque_noise, is_foreseen) in [(0.0, true), (1e-9, false)] {
+        e.per_segment[0].torque_noise = torque_noise;
+        let found = e.next_steps().pop();
+        let Some(NextStep::OtherStart { turn: true, number: 3, gain, .. }) = found else {
+            panic!("{found:?}")
+        };
+        assert_eq!(gain.is_some(), is_foreseen, "{torque_noise}");
+    }
+}
+
 /// A body is driven whose momentum grows by half while drag stands at its bound, by a tenth where the law holds the tensor far off.
 #[test]
 fn a_body_that_grows_at_the_bound_of_drag_is_driven() {
