@@ -355,17 +355,22 @@ mod tests {
         let factor = Form::from_fn(|i, k| 1e-3 / (1.0 + ((3 * i + 2 * k) % 7) as f64));
         let shape = factor * factor.transpose();
         let of_shape = scale.covariance(&j, &shape, 0.0, None);
-        let of_mean = scale.covariance(&j, &Form::zeros(), 2.0, None);
-        let both = scale.covariance(&j, &shape, 2.0, None);
+        let traces = of_shape.trace() / scale.covariance(&j, &Form::zeros(), 1.0, None).trace();
+        assert!(traces > 0.0 && traces.is_finite(), "{traces}");
         let root = |c: &SMatrix<f64, 6, 6>, v: &SVector<f64, 6>| v.dot(&(c * v)).max(0.0).sqrt();
-        for k in 0..36 {
-            let v = SVector::<f64, 6>::from_fn(|i, _| f64::from((k * (i as u32 + 3) * 7) % 11) - 5.0);
-            let together = root(&of_shape, &v) + root(&of_mean, &v);
-            assert!(root(&both, &v) >= together * (1.0 - 1e-12), "{k}");
+        // the mean is known by so many deviations of the shape
+        for deviations in [0.1, 0.9, 3.0] {
+            let excess = deviations * deviations * traces;
+            let of_mean = scale.covariance(&j, &Form::zeros(), excess, None);
+            let both = scale.covariance(&j, &shape, excess, None);
+            for k in 0..36 {
+                let v = SVector::<f64, 6>::from_fn(|i, _| f64::from((k * (i as u32 + 3) * 7) % 11) - 5.0);
+                let together = root(&of_shape, &v) + root(&of_mean, &v);
+                assert!(root(&both, &v) >= together * (1.0 - 1e-12), "{deviations} {k}");
+            }
+            let least = of_shape.trace() * (1.0 + deviations) * (1.0 + deviations);
+            assert!((both.trace() / least - 1.0).abs() < 1e-12, "{deviations}");
         }
-        let least = of_shape.trace().sqrt() + of_mean.trace().sqrt();
-        assert!((both.trace() / (least * least) - 1.0).abs() < 1e-12);
-        assert!(of_mean.trace() > 0.0 && of_shape.trace() > 0.0);
     }
 
     fn example() -> (Matrix3<f64>, Noise) {
