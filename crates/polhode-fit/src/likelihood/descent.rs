@@ -43,10 +43,10 @@ impl Problem<'_> {
             track.visit(model, start, self.radius, |left| {
                 let level = self.levels.of(left.kind);
                 let (per_square, size) = (1.0 / (level * level), left.residual.norm() / level);
-                let weight = if size <= BEYOND { 1.0 } else { BEYOND / size };
                 // x² up to the bend, 2 k x − k² beyond
-                cost += if size <= BEYOND { size * size } else { BEYOND * (2.0 * size - BEYOND) };
-                sums.add(left, weight * per_square);
+                let bent = size.min(BEYOND);
+                cost += bent * (2.0 * size - bent);
+                sums.add(left, (BEYOND / size).min(1.0) * per_square);
             })?;
             all.push(sums);
         }
