@@ -371,7 +371,7 @@ fn combinations_that_are_open_are_named() {
 #[test]
 fn what_is_open_has_a_deviation_of_a_tenth() {
     let scatter = |middle: f64| Matrix3::from_diagonal(&Vector3::new(0.0, middle, 1.0));
-    for (singular, rank) in [(10.1, 5), (9.9, 4)] {
+    for (singular, rank) in [(10.1, 5), (10.0, 5), (9.9, 4)] {
         let found = open([1e4, 1e4, 1e4, 1e4, singular], scatter(0.8));
         assert_eq!((found.rank, found.complete(), found.null_tensors.len()), (rank, rank == 5, 5 - rank));
         assert!((found.deviations[4] * singular - 1.0).abs() < 1e-12);

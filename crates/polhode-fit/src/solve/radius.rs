@@ -442,6 +442,22 @@ mod tests {
         assert!(of(4.0).is_none() && of(5.0).is_none());
     }
 
+    /// What a radius tells at best is the inverse of its information times the variance, and noise in the derivatives only adds to it.
+    #[test]
+    fn what_a_radius_tells_at_best_is_without_noise_in_the_derivatives() {
+        let (stretches, variance) = record(600, 0.0);
+        let at = Unknowns::at(Coordinates::zeros(), &[]);
+        let mut compared = Rounds::new(&stretches, 1.0, &[], at).unwrap();
+        compared.round(variance, true).unwrap();
+        for radius in [0.5, 1.0, 2.0] {
+            let judged = Judged::new(&stretches, radius, &[], variance, &compared).unwrap();
+            let (least, inverse) = (judged.least(), judged.information.try_inverse().unwrap());
+            assert!((least / (inverse.trace() * judged.variance) - 1.0).abs() < 1e-6, "{radius}: {least:e}");
+            let trace = judged.trace(&judged.rounds.inflation(&judged.parts, &judged.whitened));
+            assert!(trace > least && least > 0.0, "{radius}: {trace:e} {least:e}");
+        }
+    }
+
     /// Of 101 samples 93 test functions are too many, 88 are not, and where none has eight samples there are none.
     #[test]
     fn equations_may_be_nine_tenths_of_the_samples() {
