@@ -433,7 +433,6 @@ thresholds! {
         SCALED: f64 = 12.0, "the same of an error of the scale of rates beside attitudes, which is one coefficient in place of three: a chance of 1e-6", DERIVED;
     }
     flights: "flights in a recording" {
-        ALMOST_ALL: f64 = 0.9, "share of the turning tests that a record in a wrong unit contradicts", UNMEASURED;
         SLOW: f64 = 0.1, "rate below which the body counts as held, over the rate of its motion", UNMEASURED;
         NOISE_OF_SLOPE: f64 = 0.4,
             "largest tr J^2 of the share that the derivative of a test has in the noise", DERIVED;

@@ -13,7 +13,7 @@ mod extent;
 pub(crate) mod flight;
 
 use crate::flights::flight::{Flight, FlightLimit};
-use crate::thresholds::flights::{ALMOST_ALL, MOST_TORQUE};
+use crate::thresholds::flights::MOST_TORQUE;
 use crate::thresholds::noise::LEAST;
 
 use nalgebra::Vector3;
@@ -85,7 +85,7 @@ pub struct Flights {
 pub fn flights(record: &Record, settings: &Settings) -> Result<Flights, FitError> {
     settings.check()?;
     let cleaned = if settings.leave_out_spikes { record.without_spikes() } else { None };
-    let Normalised { stretches, rms, .. } = normalised(cleaned.as_ref().map_or(record, |(_, rest)| rest))?;
+    let Normalised { stretches, rms, input } = normalised(cleaned.as_ref().map_or(record, |(_, rest)| rest))?;
     let variance = match settings.noise {
         Some(sigma) => (sigma / rms) * (sigma / rms),
         None => noise::variance(&stretches),
@@ -99,9 +99,9 @@ pub fn flights(record: &Record, settings: &Settings) -> Result<Flights, FitError
         return Ok(whole(record));
     };
     let none = |torque: Option<f64>| {
-        // in a wrong unit of rate or time nothing is free
-        let suspect = settings.check_units && contradiction.share() > ALMOST_ALL;
-        let motion = if suspect { Motion::new(&stretches, variance) } else { None };
+        // in a wrong unit of rate or time nothing is free; wheels and torques of the record are in units of their own
+        let is_asked = settings.check_units && input.is_none();
+        let motion = if is_asked { Motion::new(&stretches, variance) } else { None };
         match open_units(record, &stretches, motion.as_ref(), rms) {
             Err(mistaken) => mistaken,
             Ok(_) => FitError::NoFlight { share: contradiction.share(), torque, most: MOST_TORQUE },

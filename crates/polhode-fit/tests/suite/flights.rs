@@ -201,6 +201,24 @@ fn a_body_that_is_never_let_go_has_no_flight() {
     }
 }
 
+/// In revolutions a second that are read as rad/s no tensor follows the motion of a free body, though a quarter of its time contradicts none: the unit is
+/// named, and where units are to be trusted the body is never let go.
+#[test]
+fn a_free_record_in_a_wrong_unit_is_named_by_its_unit() {
+    let body = Inertia::from_moments([0.4, 1.0, 1.2]).unwrap();
+    let times: Vec<f64> = (0..2000).map(|i| 0.004 * f64::from(i)).collect();
+    let (none, start) = (Disturbances::default(), Vector3::new(8.0, 5.0, 7.0));
+    let rates = simulate_with(&body, start, &times, &none, &noise(0.01), &mut Random::new(7)).unwrap();
+    let rates: Vec<Vector3<f64>> = rates.iter().map(|w| w / core::f64::consts::TAU).collect();
+    let record = Record::from_samples(&times, &rates).unwrap();
+    let found = |check: bool| flights(&record, &Settings::default().with_check_units(check)).unwrap_err();
+    let refused = found(true);
+    assert!(matches!(refused, FitError::Units { .. }), "{refused}");
+    assert!(refused.to_string().contains("rates in rev/s read as rad/s"), "{refused}");
+    let FitError::NoFlight { share, .. } = found(false) else { panic!() };
+    assert!((0.5..0.9).contains(&share), "{share}");
+}
+
 #[test]
 fn neither_units_nor_the_axes_of_the_sensor_change_the_flights() {
     let Recording { times, rates, throws } = Recording::new(&tosses(3), 0.1, &noise(5e-3), 4);
