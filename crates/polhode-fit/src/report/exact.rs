@@ -475,6 +475,29 @@ mod tests {
         }
     }
 
+    /// A drag of the motion is told for a second, and momentum falls by as much; its deviation goes with the noise of the attitudes.
+    #[test]
+    fn a_drag_is_told_for_a_second_and_is_the_trend() {
+        let mut free = tumbling(ten(), true, Vector3::zeros());
+        free.followed.levels.attitude = 1e-3;
+        let model = Model { drag: Some(0.02), ..free.followed.model.clone() };
+        let motion = model.motion(&model.starts[0]).unwrap();
+        let track = &mut free.followed.tracks[0];
+        track.attitudes = track.times.iter().map(|t| motion.at(*t).unwrap().attitude).collect();
+        free.followed.model = model;
+        let of = |noise: Option<f64>| {
+            let settings = Settings::default().with_torque(TorqueModel::Drag).with_attitude_noise(noise);
+            let e = report(0, &settings, &free, Told { is_inverse: false, gain: None }).unwrap();
+            let [drag] = &e.torque.coefficients[..] else { panic!("{:?}", e.torque) };
+            // in units of 2 rad/s
+            assert!((drag.value / 0.04 - 1.0).abs() < 1e-12, "{}", drag.value);
+            assert_eq!(e.momentum_trend, Some(InvariantTrend { rate: -drag.value, sigma: drag.sigma }));
+            drag.sigma
+        };
+        let sigma = of(None);
+        assert!(sigma > 0.0 && (of(Some(4e-3)) / sigma - 4.0).abs() < 1e-6, "{sigma:e}");
+    }
+
     /// A size by the energy of a motion has the noise of what the motion was fitted to: of attitudes none beside that of the shape, so that the
     /// energy stays as it is known; of rates none of a straight line through turns, so that energies of a tenth apart contradict each other.
     #[test]

@@ -319,6 +319,9 @@ pub(crate) fn by_prior(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::physical::coordinates::coordinates;
+    use crate::simulate::simulate;
+    use polhode::num::Random;
 
     /// The walk of the mean is the double sum of the covariances of all samples, and a gap between stretches is part of it.
     #[test]
@@ -370,6 +373,35 @@ mod tests {
             }
             let least = of_shape.trace() * (1.0 + deviations) * (1.0 + deviations);
             assert!((both.trace() / least - 1.0).abs() < 1e-12, "{deviations}");
+        }
+    }
+
+    /// By the motions shape and mean share noise as an efficient estimate would, yet no more than all of the mean's: where the shape is so uncertain that
+    /// they would, their correlation is one along what they share, and below that it goes with the deviation of the shape.
+    #[test]
+    fn shape_and_mean_share_no_more_than_there_is() {
+        let (j, noise) = example();
+        let times: Vec<f64> = (0..200).map(|i| 0.1 * f64::from(i)).collect();
+        let (body, start) = (Inertia::from_tensor(j).unwrap(), Vector3::new(0.5, 0.8, -0.4));
+        let rates = simulate(&body, start, &times, 0.0, &mut Random::new(1)).unwrap();
+        let stretches = [Stretch::new(times, rates)];
+        let motions = Motions::nearest(&stretches, &coordinates(&j), noise.variance).unwrap();
+        let scale = scale_of(Known::TwiceEnergy(3.0), &stretches, 1.0, &j, noise);
+        let (mean, _) = scale.mean.as_ref().unwrap();
+        let shared = motions.shared(&mean.m).unwrap();
+        let entries = SVector::<f64, 6>::from_fn(|k, _| j[ENTRIES[k]]);
+        let map = entries_of_coordinates() * scale.trace + entries * scale.slope.transpose();
+        // the entries that follow what is shared
+        let v = map * (map.tr_mul(&map).try_inverse().unwrap() * shared);
+        let of = |c: SMatrix<f64, 6, 6>| v.dot(&(c * v));
+        for (deviations, correlation) in [(0.5, 0.5), (0.9, 0.9), (3.0, 1.0)] {
+            let deviation = deviations * mean.samples * mean.variance.sqrt() / shared.norm();
+            let shape = Form::identity() * (deviation * deviation);
+            let of_shape = of(scale.covariance(&j, &shape, 0.0, None));
+            let of_mean = of(scale.covariance(&j, &Form::zeros(), 1.0, None));
+            let both = of(scale.covariance(&j, &shape, 1.0, Some(&motions)));
+            let found = (both - of_shape - of_mean).abs() / (2.0 * (of_shape * of_mean).sqrt());
+            assert!(f64::abs(found / correlation - 1.0) < 1e-6, "{deviations}: {found}");
         }
     }
 
