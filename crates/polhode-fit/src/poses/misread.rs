@@ -86,6 +86,7 @@ mod tests {
     use crate::likelihood::growth::Followed;
     use crate::likelihood::track::Model;
     use crate::physical::coordinates::Coordinates;
+    use core::cell::Cell;
     use polhode::rotation::Quat;
 
     fn misread(error: RateError, offset: Vector3<f64>, scale: f64) -> Misread {
@@ -128,5 +129,46 @@ mod tests {
         let cost = |scale: f64| misread(RateError::Scale, Vector3::zeros(), scale).cost(&found);
         assert!((cost(0.0) - plain).abs() < 1e-13);
         assert!((cost(0.5) - plain - 12.0 * libm::log(1.5)).abs() < 1e-13);
+    }
+
+    /// A motion with so much log-likelihood, and what an offset of the rates would gain beside it.
+    fn followed(likelihood: f64, gain: f64) -> Found {
+        let (x, alignment) = (Coordinates::zeros(), Quat::identity());
+        let followed = Followed {
+            model: Model { x, alignment, is_aligned: true, drag: None, starts: Vec::new() },
+            is_still: true,
+            tracks: Vec::new(),
+            // of one component
+            levels: Levels { attitude: 0.5, rate: libm::exp(-likelihood) },
+            dof: [0.0, 1.0],
+            deviation: 0.0,
+            beyond: Vec::new(),
+        };
+        let alternatives = Some(Alternatives::gaining([gain, 0.0, 0.0, 0.0, 0.0]));
+        let moved = Moved { followed, alternatives };
+        Found { moved, torque: Acting::Nothing, gain: None, without: None, models: Vec::new() }
+    }
+
+    /// An offset is taken out from a gain of 15 on, in up to six steps while each gains a hundredth and makes the readings likelier; where the first does
+    /// not, none is. Its gain is that of the first step.
+    #[test]
+    fn an_error_is_taken_out_while_that_is_likelier() {
+        // of the first step the gain; by how much each step is likelier, and the gain of the next
+        for (first, more, next, steps, likelihood, is_taken) in [
+            (15.1, 1.0, 0.011, 6, 6.0, true),
+            (15.1, 1.0, 0.009, 1, 1.0, true),
+            (15.1, -1.0, 9.0, 1, 0.0, false),
+            (14.9, 1.0, 9.0, 0, 0.0, false),
+        ] {
+            let count = Cell::new(0);
+            let of = |_: &[Track]| {
+                count.set(count.get() + 1);
+                Some(followed(more * f64::from(count.get()), next))
+            };
+            let (best, taken) = without_error_of_rates(&[], followed(0.0, first), of);
+            assert_eq!((count.get(), taken.map(|own| own.gain)), (steps, is_taken.then_some(first)));
+            let found = -0.5 * best.moved.followed.cost();
+            assert!((found - likelihood).abs() < 1e-12, "{first} {more} {next}: {found}");
+        }
     }
 }

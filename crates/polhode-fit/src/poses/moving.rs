@@ -77,6 +77,65 @@ fn turned_back(track: &Track, turn: Vector3<f64>, is_of_rates: bool) -> Track {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::likelihood::alternatives::{self, Alternatives, MovingAxes};
+    use crate::likelihood::choice::{Acting, Moved};
+    use crate::likelihood::descent::Levels;
+    use crate::likelihood::growth::Followed;
+    use crate::likelihood::track::Model;
+
+    /// Axes that still turn by so much, of which a step finds a share: a gain of 10⁴ times the square.
+    fn left(turn: Vector3<f64>, share: f64, is_of_rates: bool) -> Found {
+        let (x, alignment) = (Coordinates::zeros(), Quat::identity());
+        let followed = Followed {
+            model: Model { x, alignment, is_aligned: true, drag: None, starts: Vec::new() },
+            is_still: true,
+            tracks: Vec::new(),
+            levels: Levels { attitude: 0.0, rate: libm::exp(turn.norm_squared()) },
+            dof: [0.0, 1e4],
+            deviation: 0.0,
+            beyond: Vec::new(),
+        };
+        let values = (turn * share).as_slice().to_vec();
+        let found =
+            alternatives::Found { values, ..alternatives::Found::gaining(1e4 * turn.norm_squared(), 3) };
+        let mut all = Alternatives::gaining([0.0; 5]);
+        all.moving = Some(MovingAxes { found, is_of_rates });
+        let moved = Moved { followed, alternatives: Some(all) };
+        Found { moved, torque: Acting::Nothing, gain: None, without: None, models: Vec::new() }
+    }
+
+    /// From a gain of 15 on axes are turned back, step by step up to six, while a step gains a hundredth and the samples are likelier for it, and while
+    /// it is the same sensor that moves; the gain is that of the first step.
+    #[test]
+    fn axes_are_turned_back_while_that_is_likelier() {
+        let turn = Vector3::new(0.5, 0.0, 0.0);
+        let times = vec![-1.0, 1.0];
+        let attitudes = times.iter().map(|t| Quat::exponential(Vec3::from(turn * (0.5 * t)))).collect();
+        let tracks = [Track { attitudes, rates: Vec::new(), used: vec![true; 2], times }];
+        // from the middle to the end is half of it
+        let rest = |tracks: &[Track]| {
+            let half: Vector3<f64> = tracks[0].attitudes[1].logarithm().into();
+            half * 2.0
+        };
+        let near = |moving: Option<Moving>, share: f64| {
+            let Moving { turn: found, gain, .. } = moving.unwrap();
+            assert!((found - turn * share).norm() < 1e-12 && (gain / 2500.0 - 1.0).abs() < 1e-12, "{found}");
+        };
+        // 2500, 25 and 0.25 are gained by steps of nine tenths, and then no hundredth
+        for (share, expected) in [(0.9, 0.999), (0.1, 1.0 - 0.531_441)] {
+            let of = |tracks: &[Track]| Some(left(rest(tracks), share, false));
+            near(with_moving_axes(&tracks, left(turn, share, false), of).1, expected);
+        }
+        let other = |tracks: &[Track]| Some(left(rest(tracks), 0.9, true));
+        near(with_moving_axes(&tracks, left(turn, 0.9, false), other).1, 0.9);
+        let worse = |_: &[Track]| Some(left(turn * 2.0, 0.9, false));
+        near(with_moving_axes(&tracks, left(turn, 0.9, false), worse).1, 0.0);
+        near(with_moving_axes(&tracks, left(turn, 0.9, false), |_| None).1, 0.0);
+        for (gain, is_moving) in [(14.9, false), (15.1, true)] {
+            let found = left(Vector3::y() * f64::sqrt(gain * 1e-4), 0.9, false);
+            assert_eq!(with_moving_axes(&tracks, found, |_| None).1.is_some(), is_moving, "{gain}");
+        }
+    }
 
     /// What is added to the tensor is the square of its own rows of the factor and of the shift.
     #[test]
