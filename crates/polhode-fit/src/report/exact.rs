@@ -375,6 +375,7 @@ mod tests {
     use crate::poses::misread::Misread;
     use crate::poses::moving::Moving;
     use crate::report::answer::ratios_of;
+    use crate::report::warning::Warning;
     use polhode::rotation::Vec3;
 
     /// Where a body is that tumbles about the middle of the third segment, at 5 s; samples are off by this rotation vector or rate, and the second is
@@ -438,6 +439,56 @@ mod tests {
     /// 101 samples about the middle of a segment.
     fn ten() -> Vec<f64> {
         (0..=100).map(|k| 0.1 * f64::from(k) - 5.0).collect()
+    }
+
+    /// Ten units of time of the free body, at a noise of a thousandth.
+    fn quiet(has_attitudes: bool) -> Free {
+        let mut free = tumbling(ten(), has_attitudes, Vector3::zeros());
+        (free.torque, free.gain, free.without) = (Acting::Nothing, None, None);
+        free.followed.levels = Levels { attitude: 1e-3, rate: 1e-3 };
+        free
+    }
+
+    /// What the samples leave open, or the steady spins within their noise do, is refused before a search that did not come to rest, and both are
+    /// before any number is told.
+    #[test]
+    fn what_is_open_is_refused_before_what_is_not_at_rest() {
+        let settings = Settings::default().with_torque(TorqueModel::None);
+        let refused = |is_still: bool, noise: f64, steady: Option<f64>| {
+            let mut free = quiet(true);
+            (free.followed.is_still, free.followed.levels.attitude) = (is_still, noise);
+            free.steady = steady.map(|information| Form::identity() * information);
+            report(0, &settings, &free, Told { is_inverse: false, gain: None }).err()
+        };
+        // deviations of a thousandth and of one
+        assert_eq!((refused(true, 1e-3, None), refused(true, 1e-3, Some(1e6))), (None, None));
+        assert_eq!(refused(false, 1e-3, None), Some(FitError::Poses(PoseFault::Unsettled)));
+        for (is_still, noise, steady) in [(true, 1e3, None), (false, 1e3, None), (true, 1e-3, Some(1.0))] {
+            let found = refused(is_still, noise, steady);
+            assert!(matches!(found, Some(FitError::Unidentifiable(_))), "{is_still} {noise}: {found:?}");
+        }
+    }
+
+    /// What lies beyond the ellipsoid of the second derivative is by how much the deviations exceed their bound: of three times its squares they are
+    /// twice as large, which is warned of.
+    #[test]
+    fn what_lies_beyond_the_ellipsoid_exceeds_the_bound() {
+        let settings = Settings::default().with_torque(TorqueModel::None);
+        let mut free = quiet(true);
+        let squares = information(&settings, &free).unwrap().tensor.try_inverse().unwrap().trace();
+        let of = |free: &Free| report(0, &settings, free, Told { is_inverse: false, gain: None }).unwrap();
+        let times = |e: &Estimate| {
+            e.warnings.iter().find_map(|warning| match warning {
+                Warning::Profile { times } => Some(*times),
+                _ => None,
+            })
+        };
+        let plain = of(&free);
+        assert!((plain.bound_ratio.unwrap() - 1.0).abs() < 1e-9 && times(&plain).is_none());
+        free.followed.beyond = vec![Coordinates::new(0.5, -0.5, 0.0, 0.5, 0.5) * (3.0 * squares).sqrt()];
+        let more = of(&free);
+        let (ratio, told) = (more.bound_ratio.unwrap(), times(&more).unwrap());
+        assert!((ratio / 2.0 - 1.0).abs() < 1e-6 && told == ratio, "{ratio} {told}");
     }
 
     /// Of two segments alike each has half of the information, and without one of them variances are twice as large about the same tensor. Of two
@@ -504,12 +555,6 @@ mod tests {
     fn a_size_has_the_noise_of_its_readings_alone() {
         let settings = Settings::default().with_torque(TorqueModel::None).with_known(Known::TwiceEnergy(3.0));
         let told = Told { is_inverse: false, gain: None };
-        let quiet = |has_attitudes: bool| {
-            let mut free = tumbling(ten(), has_attitudes, Vector3::zeros());
-            (free.torque, free.gain, free.without) = (Acting::Nothing, None, None);
-            free.followed.levels = Levels { attitude: 1e-3, rate: 1e-3 };
-            free
-        };
         let free = quiet(true);
         let covariance = report(0, &settings, &free, told).unwrap().inertia_covariance.unwrap();
         let rates = fitted_rates(&free);
