@@ -72,8 +72,8 @@ impl FreeMotion {
     /// [From points](Self::from_point) of several bodies: each has the bits that it has alone, and they are worked out side by side.
     pub(crate) fn from_points(starts: &[(&Inertia, Point<Dd>)]) -> Vec<Self> {
         let bodies: Vec<Body> = starts.iter().map(|&(inertia, _)| Body::free(inertia.clone())).collect();
-        let moments = bodies.iter().map(|body| -> Vec3<Dd> { body.rotor().moments() });
-        let orbits = FreeOrbit::of_each(moments.zip(starts).map(|(moments, &(_, start))| (moments, start)));
+        let moving = bodies.iter().zip(starts).map(|(body, &(_, start))| (body.rotor().moments(), start));
+        let orbits = FreeOrbit::of_each(&moving.collect::<Vec<_>>());
         bodies.into_iter().zip(orbits).map(|(body, orbit)| Self::along(body, orbit)).collect()
     }
 

@@ -7,7 +7,7 @@ use super::character::{AtRest, Character};
 use super::circulation::Circulation;
 use super::derivative::Variation;
 use super::phase::{Spin, pair, steady};
-use super::polhode::{Polhode, exact_separation};
+use super::polhode::Polhode;
 use super::theta::{Points, Theta};
 use crate::body::{Phase, Point};
 use crate::num::{Dd, Instructions, LANES, Lane, Precise};
@@ -40,12 +40,14 @@ struct Circulating {
     polhode: Polhode<Dd>,
     momentum: Vec3<Dd>,
     quick: Theta,
-    precise: OnceLock<Circulation<Dd>>,
+    /// Large, and seldom asked for.
+    precise: OnceLock<Box<Circulation<Dd>>>,
 }
 
 impl Circulating {
     fn precise(&self) -> &Circulation<Dd> {
-        self.precise.get_or_init(|| Circulation::of(self.polhode.clone(), self.momentum).with_period())
+        self.precise
+            .get_or_init(|| Box::new(Circulation::of(self.polhode.clone(), self.momentum).with_period()))
     }
 }
 
@@ -59,17 +61,6 @@ struct Path {
 }
 
 impl Path {
-    fn of(moments: Vec3<Dd>, start: Point<Dd>) -> Self {
-        let momentum = start.momentum_body;
-        let norm = momentum.norm();
-        let polhode = if norm == Dd::ZERO {
-            None
-        } else {
-            Polhode::of(moments, momentum, norm, exact_separation(moments, momentum))
-        };
-        Path { moments, start, norm, polhode }
-    }
-
     /// With the theta functions of its polhode.
     fn orbit(self, quick: Option<Theta>) -> FreeOrbit {
         let Path { moments, start, norm, polhode } = self;
@@ -92,15 +83,18 @@ const FEW: usize = 8;
 impl FreeOrbit {
     /// Of a body with the principal `moments`, from `start` at t = 0.
     pub(crate) fn new(moments: Vec3<Dd>, start: Point<Dd>) -> Self {
-        let path = Path::of(moments, start);
+        let (norm, polhode) = Polhode::of_momentum(moments, start.momentum_body);
+        let path = Path { moments, start, norm, polhode };
         let quick =
             path.polhode.as_ref().map(|polhode| Theta::of(polhode, start.attitude, start.momentum_body));
         path.orbit(quick)
     }
 
     /// The same of each of `bodies`, with the bits that it has alone.
-    pub(crate) fn of_each(bodies: impl IntoIterator<Item = (Vec3<Dd>, Point<Dd>)>) -> Vec<Self> {
-        let paths: Vec<Path> = bodies.into_iter().map(|(moments, start)| Path::of(moments, start)).collect();
+    pub(crate) fn of_each(bodies: &[(Vec3<Dd>, Point<Dd>)]) -> Vec<Self> {
+        let momenta: Vec<_> = bodies.iter().map(|(moments, start)| (*moments, start.momentum_body)).collect();
+        let path = |(&(moments, start), (norm, polhode))| Path { moments, start, norm, polhode };
+        let paths: Vec<Path> = bodies.iter().zip(Polhode::of_each(&momenta)).map(path).collect();
         let circulating = paths.iter().filter_map(|path| Some((path, path.polhode.as_ref()?)));
         let motions: Vec<_> = circulating
             .map(|(path, polhode)| (polhode, path.start.attitude, path.start.momentum_body))
@@ -137,27 +131,24 @@ impl FreeOrbit {
 
     /// Gives `each` attitude and momentum at the `times` (s), with their numbers.
     pub(crate) fn at_many(&self, times: &[f64], by: Instructions, mut each: impl FnMut(usize, Phase<f64>)) {
-        let mut lanes = Points::new();
+        let mut lanes = (times.len() >= FEW).then(Points::new);
         for (block, times) in times.chunks(LANES).enumerate() {
-            let together = match &self.kind {
+            let together = match (&self.kind, &mut lanes) {
                 // what a block takes is as long as a dozen single times
-                Kind::Circulating(_) if times.len() < FEW => false,
-                Kind::Circulating(orbit) => {
+                (Kind::Circulating(orbit), Some(lanes)) if times.len() >= FEW => {
                     let mut t = Lane::ZERO;
                     t[..times.len()].copy_from_slice(times);
-                    orbit.quick.at_all(&t, &mut lanes, by)
+                    orbit.quick.at_all(&t, lanes, by)
                 }
-                Kind::Steady(_) | Kind::Rest => false,
+                _ => false,
             };
             // one call of `each`, so that it is inlined and no point waits to be read from memory
-            let point = lanes.by_lane();
+            let point = lanes.as_ref().filter(|_| together).map(|lanes| lanes.by_lane());
             for (n, &t) in times.iter().enumerate() {
-                let x = if !together {
-                    self.at(Dd::from(t)).phase()
-                } else if t == 0.0 {
-                    self.start.to_f64().phase()
-                } else {
-                    point(n)
+                let x = match &point {
+                    Some(_) if t == 0.0 => self.start.to_f64().phase(),
+                    Some(point) => point(n),
+                    None => self.at(Dd::from(t)).phase(),
                 };
                 each(block * LANES + n, x);
             }
@@ -259,6 +250,8 @@ mod tests {
                 2 => [0.0, 0.0, 2.0 * a - 1.0],
                 4 => [1e-9 * a, 1.0, -1e-7 * b],
                 6 => [1e-280 * a, 1.0, 1e-270],
+                8 => [0.1 * b, 1.0, 0.002 * c],
+                10 => [0.002 * a, -1.0, 0.1 * c],
                 9 => [0.0; 3],
                 11 => [a * 1e90, c * 1e90, -b * 1e90],
                 _ => [2.0 * a - 1.0, 1.2 * b - 0.6, 2.0 * c - 1.0],
@@ -279,17 +272,22 @@ mod tests {
         let bodies = bodies();
         let alone: Vec<String> =
             bodies.iter().map(|&(moments, start)| format!("{:?}", FreeOrbit::new(moments, start))).collect();
-        for together in [1, 2, 15, 16, 17, bodies.len()] {
-            let orbits = bodies.chunks(together).flat_map(|group| FreeOrbit::of_each(group.iter().copied()));
+        for together in [1, 2, 4, 15, 16, 17, 64, bodies.len()] {
+            let orbits = bodies.chunks(together).flat_map(FreeOrbit::of_each);
             for (n, (orbit, alone)) in orbits.zip(&alone).enumerate() {
                 assert_eq!(&format!("{orbit:?}"), alone, "body {n} of {together} together");
             }
         }
         // there are some of every kind
         let kinds = ["Direct", "Dual", "Limit", "Separatrix", "Steady", "Rest"];
-        for (kind, least) in kinds.into_iter().zip([50, 3, 1, 1, 10, 5]) {
-            let count = alone.iter().filter(|orbit| orbit.contains(kind)).count();
-            assert!(count >= least, "{kind}: {count}");
+        for (kind, least) in kinds.into_iter().zip([40, 16, 1, 1, 10, 5]) {
+            let of_kind: Vec<_> = alone.iter().filter(|orbit| orbit.contains(kind)).collect();
+            assert!(of_kind.len() >= least, "{kind}: {}", of_kind.len());
+            // those that are worked out side by side in both modes
+            for mode in ["about_smallest: true", "about_smallest: false"] {
+                let count = of_kind.iter().filter(|orbit| orbit.contains(mode)).count();
+                assert!(least < 16 || count >= 4, "{kind}, {mode}: {count}");
+            }
         }
     }
 }

@@ -20,8 +20,10 @@
 //!
 //! Source: Landau and Lifshitz, Mechanics, §37, without relabelled vectors and without differences that cancel.
 
+use multiversion::multiversion;
+
 use crate::num::elliptic::{Modulus, incomplete};
-use crate::num::{Dd, Expansion, Precise};
+use crate::num::{Dd, DdLanes, Expansion, Precise, Real, Several};
 use crate::rotation::{Quat, Vec3};
 
 /// Below this k'² the elliptic functions are replaced by their limits for k' → 0.
@@ -130,6 +132,175 @@ impl<S: Precise> Asymptotic<S> {
     }
 }
 
+/// Motions that are worked out side by side: a double-double operation is a chain in which each part waits for the one before.
+pub(super) const TOGETHER: usize = 16;
+
+/// A number of each of them.
+pub(super) type Lanes = DdLanes<TOGETHER>;
+
+/// Fewer are worked out sooner one by one.
+pub(super) const FEW: usize = 4;
+
+/// What a polhode is made of, of one body or of several, before powers of two are put back and the range is looked at.
+struct Shape<S> {
+    sigma: S,
+    delta: S,
+    amplitude: [S; 3],
+    moments: [S; 3],
+    twice_energy: S,
+    parameter: S,
+    /// k'², over a power of two.
+    complement: S,
+    rate: S,
+    start: (S, S),
+    /// The size of (m_b/B, m_c/C), negative where m_c is.
+    length: S,
+    separation: S,
+    delta_a: S,
+    delta_c: S,
+}
+
+/// Component number `place` of the `axes` of each body.
+#[inline(always)]
+fn along<S: Several>(v: &[S; 3], axes: &[[usize; 3]], place: usize) -> S {
+    let mut found = v[0];
+    for (n, axes) in axes.iter().enumerate() {
+        found.set(n, v[axes[place]].get(n));
+    }
+    found
+}
+
+impl<S: Several> Shape<S> {
+    /// For moments `i`, momenta as `given` and as `m` over powers of two, and axes l, μ, h, which become a, b, c.
+    #[inline(always)]
+    fn of(i: &[S; 3], m: &[S; 3], given: &[S; 3], scaled_separation: S, axes: &mut [[usize; 3]]) -> Self {
+        let (i_l, i_mu, i_h) = (along(i, axes, 0), along(i, axes, 1), along(i, axes, 2));
+        let (m_l, m_mu, m_h) = (along(m, axes, 0), along(m, axes, 1), along(m, axes, 2));
+        // sums of terms of one sign: nothing cancels
+        let delta_l = m_mu * m_mu * (i_mu - i_l) / i_mu + m_h * m_h * (i_h - i_l) / i_h;
+        let delta_h = -(m_l * m_l * (i_h - i_l) / i_l + m_mu * m_mu * (i_h - i_mu) / i_mu);
+        let separation = scaled_separation / (i_l * i_h);
+        let (mut delta_a, mut delta_c) = (delta_l, delta_h);
+        let (mut upper, mut lower) = (i_mu, i_l);
+        for (n, axes) in axes.iter_mut().enumerate() {
+            let about_smallest = separation.get(n) <= Dd::ZERO;
+            if !about_smallest {
+                axes.swap(0, 2);
+                delta_a.set(n, delta_h.get(n));
+                delta_c.set(n, delta_l.get(n));
+                upper.set(n, i_h.get(n));
+                lower.set(n, i_mu.get(n));
+            }
+        }
+
+        let (i_a, i_b, i_c) = (along(i, axes, 0), along(i, axes, 1), along(i, axes, 2));
+        let (m_b, m_c) = (along(m, axes, 1), along(m, axes, 2));
+        let (ca, ba, cb) = (i_c - i_a, i_b - i_a, i_c - i_b);
+        let (given_a, given_c) = (along(given, axes, 0), along(given, axes, 2));
+        let mut sigma = S::of(1.0);
+        for n in 0..S::COUNT {
+            sigma.set(n, if given_a.get(n) < Dd::ZERO { -Dd::ONE } else { Dd::ONE });
+        }
+        let mut delta = sigma;
+        for (n, [a, b, _]) in axes.iter().enumerate() {
+            delta.set(n, if (b + 3 - a) % 3 == 1 { sigma.get(n) } else { -sigma.get(n) });
+        }
+        let amp_a = (-(i_a * delta_c) / ca).sqrt();
+        let amp_b = (i_b * delta_a / ba).sqrt();
+        let amp_c = (i_c * delta_a / ca).sqrt();
+        let denominator = delta_c * (upper - lower);
+        let (x, y) = (m_b / amp_b, m_c / amp_c);
+        let mut length = (x * x + y * y).sqrt();
+        for n in 0..S::COUNT {
+            let size = length.get(n);
+            length.set(n, if given_c.get(n) < Dd::ZERO { -size } else { size });
+        }
+        Shape {
+            sigma,
+            delta,
+            amplitude: [amp_a, amp_b, amp_c],
+            moments: [i_a, i_b, i_c],
+            twice_energy: m[0] * m[0] / i[0] + m[1] * m[1] / i[1] + m[2] * m[2] / i[2],
+            parameter: -(delta_a * cb) / (delta_c * ba),
+            complement: separation * (i_h - i_l) / denominator,
+            rate: delta * ca / (i_a * i_c) * amp_a * amp_c / amp_b,
+            start: (x / length, y / length),
+            length,
+            separation,
+            delta_a,
+            delta_c,
+        }
+    }
+
+    /// That of body `n`.
+    fn one(&self, n: usize) -> Shape<Dd> {
+        Shape {
+            sigma: self.sigma.get(n),
+            delta: self.delta.get(n),
+            amplitude: self.amplitude.each_ref().map(|x| x.get(n)),
+            moments: self.moments.each_ref().map(|x| x.get(n)),
+            twice_energy: self.twice_energy.get(n),
+            parameter: self.parameter.get(n),
+            complement: self.complement.get(n),
+            rate: self.rate.get(n),
+            start: (self.start.0.get(n), self.start.1.get(n)),
+            length: self.length.get(n),
+            separation: self.separation.get(n),
+            delta_a: self.delta_a.get(n),
+            delta_c: self.delta_c.get(n),
+        }
+    }
+}
+
+/// |m| of each body, and its shape by the axes l, μ, h, which become a, b, c.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
+fn side_by_side(
+    [i1, i2, i3, m1, m2, m3, scaled_separation]: &[Lanes; 7],
+    axes: &mut [[usize; 3]; TOGETHER],
+) -> (Lanes, Shape<Lanes>) {
+    let (i, m) = ([*i1, *i2, *i3], [*m1, *m2, *m3]);
+    let norm = (m[0] * m[0] + m[1] * m[1] + m[2] * m[2]).sqrt();
+    (norm, Shape::of(&i, &m, &m, *scaled_separation, axes))
+}
+
+impl Polhode<Dd> {
+    /// |m| of the momentum `m`, and its polhode in a body with the moments `i`.
+    pub(super) fn of_momentum(i: Vec3<Dd>, m: Vec3<Dd>) -> (Dd, Option<Self>) {
+        let norm = m.norm();
+        let polhode = if norm == Dd::ZERO { None } else { Self::of(i, m, norm, exact_separation(i, m)) };
+        (norm, polhode)
+    }
+
+    /// The same for the moments and the momentum of each of `bodies`, with the bits that it has alone.
+    pub(super) fn of_each(bodies: &[(Vec3<Dd>, Vec3<Dd>)]) -> Vec<(Dd, Option<Self>)> {
+        let mut all = Vec::with_capacity(bodies.len());
+        for group in bodies.chunks(TOGETHER) {
+            if group.len() < FEW {
+                all.extend(group.iter().map(|&(i, m)| Self::of_momentum(i, m)));
+                continue;
+            }
+            let numbers = Lanes::gathered(group.iter().map(|&(i, m)| {
+                let ([i1, i2, i3], [m1, m2, m3]) = (i.0, m.0);
+                [i1, i2, i3, m1, m2, m3, exact_separation(i, m)]
+            }));
+            let mut orders = [[0, 1, 2]; TOGETHER];
+            orders.iter_mut().zip(group).for_each(|(order, (i, _))| *order = i.ascending());
+            let mut axes = orders;
+            let (norms, shapes) = side_by_side(&numbers, &mut axes);
+            for (n, &(i, m)) in group.iter().enumerate() {
+                let norm = norms.get(n);
+                let is_usual = norm != Dd::ZERO && exponent(norm) == 0 && lift(m, orders[n]) == 0;
+                all.push(if is_usual {
+                    (norm, Self::of_shape::<false>(&shapes.one(n), axes[n], m, m, norm, [0, 0]))
+                } else {
+                    Self::of_momentum(i, m)
+                });
+            }
+        }
+        all
+    }
+}
+
 impl<S: Precise> Polhode<S> {
     /// For moments `i` and momentum `m` of size `norm` > 0, and their [`exact_separation`] or
     /// [`rounded_separation`], whose error decides the accuracy near the separatrix. `None` where the momentum stays
@@ -150,70 +321,62 @@ impl<S: Precise> Polhode<S> {
         given: Vec3<S>,
         norm: S,
         scaled_separation: S,
-        [l, mu, h]: [usize; 3],
+        order: [usize; 3],
+        powers @ [unit, _]: [i32; 2],
+    ) -> Option<Self> {
+        let m = if SCALED { Vec3(given.0.map(|m| scaled(m, -unit))) } else { given };
+        let mut axes = [order];
+        let shape = Shape::of(&i.0, &m.0, &given.0, scaled_separation, &mut axes);
+        Self::of_shape::<SCALED>(&shape, axes[0], m, given, norm, powers)
+    }
+
+    /// That of `shape`, where the momentum `m` is that `given` over 2^unit.
+    fn of_shape<const SCALED: bool>(
+        shape: &Shape<S>,
+        axes: [usize; 3],
+        m: Vec3<S>,
+        given: Vec3<S>,
+        norm: S,
         [unit, n]: [i32; 2],
     ) -> Option<Self> {
         let zero = S::of(0.0);
         let scaled = |x: S, n: i32| if SCALED { scaled(x, n) } else { x };
-        let m = Vec3(given.0.map(|m| scaled(m, -unit)));
-        let square = |k: usize| m[k] * m[k];
-        // sums of terms of one sign: nothing cancels
-        let delta_l = square(mu) * (i[mu] - i[l]) / i[mu] + square(h) * (i[h] - i[l]) / i[h];
-        let delta_h = -(square(l) * (i[h] - i[l]) / i[l] + square(mu) * (i[h] - i[mu]) / i[mu]);
-        let separation = scaled_separation / (i[l] * i[h]);
-        let about_smallest = separation <= zero;
-        let (a, b, c) = if about_smallest { (l, mu, h) } else { (h, mu, l) };
-        let (delta_a, delta_c) = if about_smallest { (delta_l, delta_h) } else { (delta_h, delta_l) };
+        let ([a, _, c], [i_a, i_b, i_c], [_, _, amp_c]) = (axes, shape.moments, shape.amplitude);
+        let (delta_a, delta_c, start) = (shape.delta_a, shape.delta_c, shape.start);
         if delta_a == zero || delta_c == zero || (given[a] == zero && given[c] == zero) {
             return None;
         }
-
-        let one = S::of(1.0);
-        let sigma = if given[a] < zero { -one } else { one };
-        let delta = if (b + 3 - a) % 3 == 1 { sigma } else { -sigma };
-        let (ca, ba, cb) = (i[c] - i[a], i[b] - i[a], i[c] - i[b]);
-        if cb == zero && m[a].magnitude() < SYMMETRIC {
+        if i_c - i_b == zero && m[a].magnitude() < SYMMETRIC {
             return None;
         }
         // of so small a circle about the axis a the radii are no doubles
-        if (i[b] * delta_a).magnitude().min((i[c] * delta_a).magnitude()) < f64::MIN_POSITIVE {
+        if (i_b * delta_a).magnitude().min((i_c * delta_a).magnitude()) < f64::MIN_POSITIVE {
             return None;
         }
-        let amp_a = (-(i[a] * delta_c) / ca).sqrt();
-        let amp_b = (i[b] * delta_a / ba).sqrt();
-        let amp_c = (i[c] * delta_a / ca).sqrt();
-        let denominator = if about_smallest { delta_h * (i[mu] - i[l]) } else { delta_l * (i[h] - i[mu]) };
-        let (x, y) = (m[b] / amp_b, m[c] / amp_c);
-        let half_turned = given[c] < zero;
-        let length = (x * x + y * y).sqrt();
-        let length = if half_turned { -length } else { length };
-        let start = (x / length, y / length);
-        let parameter = -(delta_a * cb) / (delta_c * ba);
-        let lifted = separation * (i[h] - i[l]) / denominator;
-        let complement = scaled(lifted, 2 * n);
+        let complement = scaled(shape.complement, 2 * n);
         let asymptotic = if complement.magnitude() >= NEGLIGIBLE {
             None
         } else if start.1.magnitude() < SMALL {
-            let cn = scaled(given[c], -(n + unit)) / (amp_c * length);
-            Some(Asymptotic::of(lifted, start.0, cn, n))
+            let cn = scaled(given[c], -(n + unit)) / (amp_c * shape.length);
+            Some(Asymptotic::of(shape.complement, start.0, cn, n))
         } else {
-            Some(Asymptotic::usual(start, parameter, complement))
+            Some(Asymptotic::usual(start, shape.parameter, complement))
         };
         Some(Polhode {
-            axes: [a, b, c],
-            about_smallest,
-            sigma,
-            delta,
-            amplitude: [amp_a, amp_b, amp_c].map(|amplitude| scaled(amplitude, unit)),
-            moments: [i[a], i[b], i[c]],
+            axes,
+            about_smallest: shape.separation <= zero,
+            sigma: shape.sigma,
+            delta: shape.delta,
+            amplitude: shape.amplitude.map(|amplitude| scaled(amplitude, unit)),
+            moments: [i_a, i_b, i_c],
             norm,
-            twice_energy: scaled(square(0) / i[0] + square(1) / i[1] + square(2) / i[2], 2 * unit),
-            parameter,
+            twice_energy: scaled(shape.twice_energy, 2 * unit),
+            parameter: shape.parameter,
             complement,
-            rate: scaled(delta * ca / (i[a] * i[c]) * amp_a * amp_c / amp_b, unit),
+            rate: scaled(shape.rate, unit),
             start,
-            half_turned,
-            separation: scaled(separation, 2 * (n + unit)),
+            half_turned: given[c] < zero,
+            separation: scaled(shape.separation, 2 * (n + unit)),
             unit,
             asymptotic,
         })

@@ -23,6 +23,20 @@ impl<const N: usize> DdLanes<N> {
         Self::from_dd(x)
     }
 
+    /// Lane n is of the n-th of `all`; lanes beyond these are as the first.
+    pub(crate) fn gathered<const K: usize>(all: impl IntoIterator<Item = [Dd; K]>) -> [Self; K] {
+        let mut lanes = [Self::all(Dd::ZERO); K];
+        for (n, numbers) in all.into_iter().enumerate() {
+            for (lanes, x) in lanes.iter_mut().zip(numbers) {
+                if n == 0 {
+                    *lanes = Self::all(x);
+                }
+                lanes.set(n, x);
+            }
+        }
+        lanes
+    }
+
     /// Adds `a b`.
     #[inline(always)]
     pub(crate) fn add_product(&mut self, a: &Self, b: &Self) {

@@ -13,8 +13,8 @@ use crate::observe::Monitor;
 /// the first cache.
 const TOGETHER: usize = 8;
 
-/// Members that are prepared together: as many as are worked out side by side.
-const PREPARED: usize = 16;
+/// Members that are prepared together: several times as many as are worked out side by side, of which each takes one form.
+const PREPARED: usize = 64;
 
 /// Of the members `part` at `times`, which are finite.
 pub(super) fn rows(ensemble: &Ensemble, part: Range<usize>, times: &[f64]) -> Rows {

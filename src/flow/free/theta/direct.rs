@@ -3,59 +3,12 @@
 use multiversion::multiversion;
 
 use super::series::{
-    DD_TERMS, Form, LEAST_TERMS, Powers, Series, T, TERMS, U, V_MINUS, V_PLUS, coefficients, first, flip,
-    rate_at_zero, total,
+    DD_TERMS, GIVEN, LEAST_TERMS, Made, Powers, Series, T, U, V_MINUS, V_PLUS, coefficients, first, given,
+    of_each, rate_at_zero, total,
 };
-use crate::flow::free::phase::Phase;
-use crate::flow::free::polhode::Polhode;
+use crate::flow::free::polhode::{Lanes, Polhode, TOGETHER};
 use crate::num::elliptic::{each_r_f, quarter_period};
-use crate::num::{Dd, DdLanes, Doubled, Several};
-
-/// Motions whose series are made side by side: a double-double operation is a chain in which each part waits for the one before.
-const TOGETHER: usize = 16;
-
-/// A number of each of them.
-type Lanes = DdLanes<TOGETHER>;
-
-/// What the series of a polhode are made of.
-const GIVEN: usize = 13;
-
-fn given(polhode: &Polhode<Dd>) -> [Dd; GIVEN] {
-    let ([amp_a, amp_b, amp_c], (sn, cn)) = (polhode.amplitude, polhode.start);
-    let (norm, delta, sigma, flip) = (polhode.norm, polhode.delta, polhode.sigma, flip(polhode));
-    let (complement, parameter, rate) = (polhode.complement, polhode.parameter, polhode.rate);
-    let at_zero = rate_at_zero(polhode);
-    [amp_a, amp_b, amp_c, sn, cn, norm, delta, sigma, flip, complement, parameter, rate, at_zero]
-}
-
-/// The numbers of one [`Series`], or of several, in double-double.
-struct Made<S> {
-    /// Rate and start, in turns.
-    phase: [S; 2],
-    twist_rate: S,
-    /// Even and odd part of Z, and of W.
-    sums: [[S; TERMS]; 4],
-    least: [S; LEAST_TERMS],
-    start: (S, S),
-}
-
-impl<S: Several> Made<S> {
-    /// The series of motion `n`.
-    fn series(&self, n: usize) -> Series {
-        let [rate, start] = self.phase;
-        let [z_even, z_odd, w_even, w_odd] =
-            self.sums.each_ref().map(|sum| sum.each_ref().map(|x| x.get(n).hi()));
-        Series {
-            form: Form::Direct,
-            phase: Phase::new(rate.get(n), start.get(n)),
-            twist_rate: self.twist_rate.get(n),
-            z: [z_even, z_odd],
-            w: [w_even, w_odd],
-            least: self.least.each_ref().map(|x| x.get(n).hi()),
-            start: (self.start.0.get(n), self.start.1.get(n)),
-        }
-    }
-}
+use crate::num::{Dd, Doubled};
 
 pub(super) fn series(polhode: &Polhode<Dd>) -> Series {
     made(&given(polhode), &[polhode.about_smallest]).series(0)
@@ -63,23 +16,7 @@ pub(super) fn series(polhode: &Polhode<Dd>) -> Series {
 
 /// The series of each of `polhodes`, with the bits that it has alone.
 pub(super) fn series_of_each(polhodes: &[&Polhode<Dd>]) -> Vec<Series> {
-    let mut all = Vec::with_capacity(polhodes.len());
-    for group in polhodes.chunks(TOGETHER) {
-        let [first, _, ..] = group else {
-            all.extend(group.iter().map(|polhode| series(polhode)));
-            continue;
-        };
-        // lanes without a motion are those of the first
-        let mut numbers = given(first).map(Lanes::all);
-        let mut about_smallest = [first.about_smallest; TOGETHER];
-        for (n, polhode) in group.iter().enumerate().skip(1) {
-            numbers.iter_mut().zip(given(polhode)).for_each(|(lanes, x)| lanes.set(n, x));
-            about_smallest[n] = polhode.about_smallest;
-        }
-        let made = side_by_side(&numbers, &about_smallest);
-        all.extend((0..group.len()).map(|n| made.series(n)));
-    }
-    all
+    of_each(polhodes, series, side_by_side)
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
@@ -89,8 +26,8 @@ fn side_by_side(numbers: &[Lanes; GIVEN], about_smallest: &[bool; TOGETHER]) -> 
 
 #[inline(always)]
 fn made<S: Doubled>(numbers: &[S; GIVEN], about_smallest: &[bool]) -> Made<S> {
-    let [amp_a, amp_b, amp_c, sn, cn, norm, delta, sigma, flip, complement, parameter, rate, at_zero] =
-        *numbers;
+    let [amp_a, amp_b, amp_c, i_a, _, _, sn, cn, norm, twice_energy, delta, sigma, flip, ..] = *numbers;
+    let [.., complement, parameter, rate] = *numbers;
     let (zero, one, pi) = (S::of(0.0), S::of(1.0), S::from_dd(Dd::PI));
     // K' − η, finite also for k = 0, and the phase of the start, for which no limit is taken here
     let of_eta = [amp_c * amp_c / (norm * norm), amp_b * amp_b / (norm * norm), one];
@@ -154,6 +91,7 @@ fn made<S: Doubled>(numbers: &[S; GIVEN], about_smallest: &[bool]) -> Made<S> {
         slope = slope + *odd * (2.0 * n as f64);
     }
     let x_rate = rate * per_phase;
+    let at_zero = rate_at_zero(twice_energy, norm, amp_a, i_a);
     let twist_rate = at_zero * 0.5 + delta * x_rate * slope / z0;
 
     // θ constants of nome q
@@ -209,5 +147,6 @@ fn made<S: Doubled>(numbers: &[S; GIVEN], about_smallest: &[bool]) -> Made<S> {
         (s, c) = (s * c2 + c * s2, c * c2 - s * s2);
     }
     let tau = S::from_dd(Dd::TAU);
-    Made { phase: [x_rate / tau, x0 / tau], twist_rate, sums, least, start: (re, im) }
+    let phase = [x_rate / tau, x0 / tau]; // in turns
+    Made { phase, twist_rate, sums, least, start: (re, im), half_period: None }
 }

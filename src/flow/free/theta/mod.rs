@@ -24,17 +24,19 @@ mod dual;
 mod lanes;
 mod series;
 
+use multiversion::multiversion;
+
 pub(super) use self::lanes::Points;
 pub(in crate::flow) use self::series::{
     Family, LEAST_TERMS, Powers, T, U, V_MINUS, V_PLUS, least_value, polynomial,
 };
 use self::series::{Form, Series, TERMS, value};
 use super::phase::{Pair, Phase, TOO_FAR};
-use super::polhode::Polhode;
+use super::polhode::{FEW, Lanes, Polhode, TOGETHER};
 use crate::num::error_free::{two_prod, two_sum};
 use crate::num::exponential::exp_of_positive;
 use crate::num::trig::{nearest, sin_cos_turns};
-use crate::num::{Dd, Real};
+use crate::num::{Dd, Several};
 use crate::rotation::{Quat, Vec3};
 
 /// Below this k'² (nome 0.2) the dual form is used; there both forms truncate below 1e-17.
@@ -62,27 +64,46 @@ impl Theta {
     /// For the attitude `q0` and the momentum `m` at the start.
     pub(super) fn of(polhode: &Polhode<Dd>, q0: Quat<Dd>, m: Vec3<Dd>) -> Self {
         let series = if is_direct(polhode) { direct::series(polhode) } else { dual::series(polhode) };
-        Self::of_series(polhode, q0, m, &series)
+        let attitude = from_space(&at_start(polhode, q0, m, &series), &[polhode.axes[0]]);
+        Self::of_series(polhode, &series, attitude.map(Dd::hi))
     }
 
-    /// The same of each of `motions`, with the bits that it has alone: direct forms are worked out side by side.
+    /// The same of each of `motions`, with the bits that it has alone: those of one form are worked out side by side.
     pub(super) fn of_each(motions: &[(&Polhode<Dd>, Quat<Dd>, Vec3<Dd>)]) -> Vec<Self> {
-        let all = motions.iter().map(|&(polhode, ..)| polhode);
-        let direct: Vec<_> = all.filter(|polhode| is_direct(polhode)).collect();
+        if motions.len() < FEW {
+            return motions.iter().map(|&(polhode, q0, m)| Self::of(polhode, q0, m)).collect();
+        }
+        let polhodes = || motions.iter().map(|&(polhode, ..)| polhode);
+        let direct: Vec<_> = polhodes().filter(|polhode| is_direct(polhode)).collect();
+        let dual: Vec<_> = polhodes().filter(|polhode| is_dual(polhode)).collect();
         let mut direct = direct::series_of_each(&direct).into_iter();
-        let of = |&(polhode, q0, m): &(&Polhode<Dd>, Quat<Dd>, Vec3<Dd>)| {
-            let series = if is_direct(polhode) { direct.next() } else { None };
-            Self::of_series(polhode, q0, m, &series.unwrap_or_else(|| dual::series(polhode)))
-        };
-        motions.iter().map(of).collect()
+        let mut dual = dual::series_of_each(&dual).into_iter();
+        let series = polhodes().map(|polhode| {
+            let made = match (is_direct(polhode), is_dual(polhode)) {
+                (true, _) => direct.next(),
+                (false, true) => dual.next(),
+                (false, false) => None,
+            };
+            made.unwrap_or_else(|| dual::series(polhode))
+        });
+        let series: Vec<Series> = series.collect();
+        let mut all = Vec::with_capacity(motions.len());
+        for (motions, series) in motions.chunks(TOGETHER).zip(series.chunks(TOGETHER)) {
+            let starts = motions.iter().zip(series);
+            let starts = starts.map(|(&(polhode, q0, m), series)| at_start(polhode, q0, m, series));
+            let mut axes = [0; TOGETHER];
+            axes.iter_mut().zip(motions).for_each(|(axis, (polhode, ..))| *axis = polhode.axes[0]);
+            let attitudes = side_by_side(&Lanes::gathered(starts), &axes);
+            for (n, ((polhode, ..), series)) in motions.iter().zip(series).enumerate() {
+                let attitude = attitudes.each_ref().map(|x| x.get(n).hi());
+                all.push(Self::of_series(polhode, series, attitude));
+            }
+        }
+        all
     }
 
-    fn of_series(polhode: &Polhode<Dd>, q0: Quat<Dd>, m: Vec3<Dd>, series: &Series) -> Self {
-        // Z at the start gives the twist of P(0); its swing is that of m
-        let (re, im) = series.start;
-        let size = (re * re + im * im).sqrt();
-        let twist = Quat::new(re / size, Vec3::unit(polhode.axes[0]) * (polhode.sigma * im / size));
-        let attitude = q0 * (twist * polhode.swing(m)).conjugate();
+    /// From q0 ∘ P(0)*.
+    fn of_series(polhode: &Polhode<Dd>, series: &Series, attitude: [f64; 4]) -> Self {
         Theta {
             axes: polhode.axes,
             about_smallest: polhode.about_smallest,
@@ -95,7 +116,7 @@ impl Theta {
             z: series.z,
             w: series.w,
             least: series.least,
-            attitude: attitude.map(Dd::hi),
+            attitude: Quat::from_components(attitude),
         }
     }
 
@@ -228,8 +249,57 @@ impl Theta {
     }
 }
 
+/// q0, m, G, σ, and Re Z and Im Z.
+fn at_start(polhode: &Polhode<Dd>, q0: Quat<Dd>, m: Vec3<Dd>, series: &Series) -> [Dd; 11] {
+    let ([w, x, y, z], [m1, m2, m3], (re, im)) = (q0.components(), m.0, series.start);
+    [w, x, y, z, m1, m2, m3, polhode.norm, polhode.sigma, re, im]
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
+fn side_by_side(at_start: &[Lanes; 11], axes: &[usize; TOGETHER]) -> [Lanes; 4] {
+    from_space(at_start, axes)
+}
+
+/// q0 ∘ P(0)* of motions about the axes a.
+#[inline(always)]
+fn from_space<S: Several>(at_start: &[S; 11], axes: &[usize]) -> [S; 4] {
+    let [w, x, y, z, m1, m2, m3, norm, sigma, re, im] = *at_start;
+    let (q0, one) = ([w, x, y, z], S::of(1.0));
+    let mut unit = [S::of(0.0); 3];
+    for (n, axis) in axes.iter().enumerate() {
+        unit[*axis].set(n, Dd::ONE);
+    }
+    let [e1, e2, e3] = unit;
+    // Z at the start gives the twist of P(0); its swing is the shortest turn of m/G to σe_a
+    let size = (re * re + im * im).sqrt();
+    let sine = sigma * im / size;
+    let twist = [re / size, e1 * sine, e2 * sine, e3 * sine];
+    let (a1, a2, a3) = (e1 * sigma, e2 * sigma, e3 * sigma);
+    let [w, x, y, z] =
+        [norm + (m1 * a1 + m2 * a2 + m3 * a3), m2 * a3 - m3 * a2, m3 * a1 - m1 * a3, m1 * a2 - m2 * a1];
+    let scale = one / (w * w + (x * x + y * y + z * z)).sqrt();
+    let [w, x, y, z] = product(twist, [w * scale, x * scale, y * scale, z * scale]);
+    product(q0, [w, -x, -y, -z])
+}
+
+/// Hamilton's product, put into the function that takes it: as an operation of quaternions it would be a call.
+#[inline(always)]
+fn product<S: Several>([w, x, y, z]: [S; 4], [pw, px, py, pz]: [S; 4]) -> [S; 4] {
+    [
+        w * pw - (x * px + y * py + z * pz),
+        px * w + x * pw + (y * pz - z * py),
+        py * w + y * pw + (z * px - x * pz),
+        pz * w + z * pw + (x * py - y * px),
+    ]
+}
+
 fn is_direct(polhode: &Polhode<Dd>) -> bool {
     polhode.complement.hi() >= SWITCH
+}
+
+/// Whether it takes the dual form itself, and no limit of that.
+fn is_dual(polhode: &Polhode<Dd>) -> bool {
+    !is_direct(polhode) && polhode.asymptotic.is_none()
 }
 
 /// Z, W and the theta quotient along the smallest moment times n₂.

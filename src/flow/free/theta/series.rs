@@ -1,8 +1,8 @@
 //! Theta series as polynomials: what the two forms share.
 
-use crate::flow::free::phase::{Pair, Phase};
-use crate::flow::free::polhode::Polhode;
-use crate::num::{Dd, Doubled, Real};
+use crate::flow::free::phase::{Pair, Phase, pair};
+use crate::flow::free::polhode::{FEW, Lanes, Polhode, TOGETHER};
+use crate::num::{Dd, Doubled, Real, Several};
 
 /// Terms of Z and W: the first left out are below 3e-20 of the sums.
 pub(super) const TERMS: usize = 4;
@@ -44,15 +44,96 @@ pub(super) struct Series {
     pub(super) start: (Dd, Dd),
 }
 
-/// ψ' at u = 0; the form without differences, which would cancel for rods.
-pub(super) fn rate_at_zero(polhode: &Polhode<Dd>) -> Dd {
-    let [a, ..] = polhode.amplitude;
-    (polhode.twice_energy + polhode.norm * a / polhode.moments[0]) / (polhode.norm + a)
+/// What the series of a polhode are made of: A, B, C, I_a, I_b, I_c, sn and cn of the start, G, 2H, δ, σ, ±1 for half a period of u,
+/// k'², k², ν.
+pub(super) const GIVEN: usize = 16;
+
+pub(super) fn given(polhode: &Polhode<Dd>) -> [Dd; GIVEN] {
+    let ([amp_a, amp_b, amp_c], [i_a, i_b, i_c]) = (polhode.amplitude, polhode.moments);
+    let (norm, twice_energy, (sn, cn)) = (polhode.norm, polhode.twice_energy, polhode.start);
+    let (delta, sigma) = (polhode.delta, polhode.sigma);
+    // half a period of u changes the sign of W and of cn
+    let flip = if polhode.half_turned { -Dd::ONE } else { Dd::ONE };
+    let (complement, parameter, rate) = (polhode.complement, polhode.parameter, polhode.rate);
+    [
+        amp_a,
+        amp_b,
+        amp_c,
+        i_a,
+        i_b,
+        i_c,
+        sn,
+        cn,
+        norm,
+        twice_energy,
+        delta,
+        sigma,
+        flip,
+        complement,
+        parameter,
+        rate,
+    ]
 }
 
-/// Half a period of u changes the sign of W and of cn.
-pub(super) fn flip(polhode: &Polhode<Dd>) -> Dd {
-    if polhode.half_turned { -Dd::ONE } else { Dd::ONE }
+/// The numbers of one [`Series`], or of several, in double-double.
+pub(super) struct Made<S> {
+    /// Rate and start, as in [`Series`].
+    pub(super) phase: [S; 2],
+    pub(super) twist_rate: S,
+    /// Even and odd part of Z, and of W.
+    pub(super) sums: [[S; TERMS]; 4],
+    pub(super) least: [S; LEAST_TERMS],
+    pub(super) start: (S, S),
+    /// Of the dual form, width and jump.
+    pub(super) half_period: Option<[S; 2]>,
+}
+
+impl<S: Several> Made<S> {
+    /// The series of motion `n`.
+    pub(super) fn series(&self, n: usize) -> Series {
+        let [rate, start] = self.phase;
+        let [z_even, z_odd, w_even, w_odd] =
+            self.sums.each_ref().map(|sum| sum.each_ref().map(|x| x.get(n).hi()));
+        Series {
+            form: match &self.half_period {
+                Some([width, jump]) => Form::Dual { width: width.get(n).hi(), jump: pair(jump.get(n)) },
+                None => Form::Direct,
+            },
+            phase: Phase::new(rate.get(n), start.get(n)),
+            twist_rate: self.twist_rate.get(n),
+            z: [z_even, z_odd],
+            w: [w_even, w_odd],
+            least: self.least.each_ref().map(|x| x.get(n).hi()),
+            start: (self.start.0.get(n), self.start.1.get(n)),
+        }
+    }
+}
+
+/// The series of each of `polhodes`: as many as there are lanes by `side_by_side`, which gives the bits that `alone` gives.
+pub(super) fn of_each(
+    polhodes: &[&Polhode<Dd>],
+    alone: fn(&Polhode<Dd>) -> Series,
+    side_by_side: fn(&[Lanes; GIVEN], &[bool; TOGETHER]) -> Made<Lanes>,
+) -> Vec<Series> {
+    let mut all = Vec::with_capacity(polhodes.len());
+    for group in polhodes.chunks(TOGETHER) {
+        if group.len() < FEW {
+            all.extend(group.iter().map(|polhode| alone(polhode)));
+            continue;
+        }
+        let numbers = Lanes::gathered(group.iter().map(|polhode| given(polhode)));
+        let mut about_smallest = [group[0].about_smallest; TOGETHER];
+        about_smallest.iter_mut().zip(group).for_each(|(lane, polhode)| *lane = polhode.about_smallest);
+        let made = side_by_side(&numbers, &about_smallest);
+        all.extend((0..group.len()).map(|n| made.series(n)));
+    }
+    all
+}
+
+/// ψ' at u = 0; the form without differences, which would cancel for rods.
+#[inline(always)]
+pub(super) fn rate_at_zero<S: Real>(twice_energy: S, norm: S, amp_a: S, i_a: S) -> S {
+    (twice_energy + norm * amp_a / i_a) / (norm + amp_a)
 }
 
 /// First two members F₀ = c, F₁ = a + bX of a family with F_{n+1} = 2X F_n − F_{n−1}, as [c, a, b].
