@@ -36,6 +36,7 @@ pub(crate) mod stumpff;
 pub(crate) mod sum;
 mod tape;
 pub mod trig;
+mod triple;
 
 pub use covariance::{Covariance, DistributionError};
 pub use dd::{Dd, ParseDdError};
@@ -56,3 +57,4 @@ pub use sum::Compensated;
 #[doc(hidden)]
 pub use sum::add_carried;
 pub use tape::Tape;
+pub(crate) use triple::Triple;
