@@ -467,6 +467,12 @@ impl Body {
 
     /// Whether the energy is a double, with room for the errors of its products.
     fn is_in_range(&self, inside: &Point<Dd>) -> bool {
+        // far from the ends doubles tell it
+        let (m, i) = (inside.momentum_body.map(Dd::hi), self.rotor().moments::<f64>());
+        let rounded = m[0] * m[0] / i[0] + m[1] * m[1] / i[1] + m[2] * m[2] / i[2];
+        if [rounded, rounded * self.inertia.scale()].iter().all(|x| (1e-200..1e200).contains(x)) {
+            return true;
+        }
         let omega = inside.momentum_body.times(self.rotor().inverse_moments());
         let twice_energy = inside.momentum_body.dot(omega).hi();
         let energy = twice_energy * self.inertia.scale();
