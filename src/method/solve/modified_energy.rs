@@ -27,6 +27,9 @@
 
 use core::cmp::Ordering;
 use core::f64::consts::FRAC_PI_2;
+use std::sync::LazyLock;
+
+use multiversion::multiversion;
 
 use crate::num::Real;
 use crate::num::elliptic::Modulus;
@@ -76,6 +79,21 @@ struct Means {
 /// like the nome to the power of twice their number, and of a body with two equal moments five are exact.
 const MOST_POINTS: usize = 24;
 const FEWEST_POINTS: f64 = 5.0;
+
+/// A number at each point, and zeros where there are fewer points.
+type AtPoints = [f64; MOST_POINTS];
+
+/// sin² of angles from 0 to π/2, for each number of points: from −π/2 to 0 it is the same.
+static SINES_SQUARED: LazyLock<[AtPoints; MOST_POINTS + 1]> = LazyLock::new(|| {
+    let mut all = [[0.0; MOST_POINTS]; MOST_POINTS + 1];
+    for (points, squares) in all.iter_mut().enumerate() {
+        for n in 0..points.div_ceil(2) {
+            let (s, c) = Real::sin_cos(FRAC_PI_2 * (n as f64 + 0.5) / points as f64);
+            (squares[n], squares[points - 1 - n]) = (s * s, c * c);
+        }
+    }
+    all
+});
 
 /// How far it is taken: the natural logarithm of the power of the nome that is left.
 const LEFT: f64 = -36.0;
@@ -185,16 +203,12 @@ impl Orbit {
         if step.partial_cmp(&(f64::EPSILON * energy)) != Some(Ordering::Greater) {
             return None;
         }
-        let points = points((1.0 - Kind::of(energy, norm, moments).parameter).sqrt());
-        // sin² of angles from 0 to π/2: from −π/2 to 0 it is the same
-        let mut squares = [0.0; MOST_POINTS];
-        let squares = &mut squares[..points];
-        for n in 0..points.div_ceil(2) {
-            let (s, c) = Real::sin_cos(FRAC_PI_2 * (n as f64 + 0.5) / points as f64);
-            (squares[n], squares[points - 1 - n]) = (s * s, c * c);
-        }
-        let beside = |energy| Orbit::of::<false>(squares, m, energy, norm, moments).here;
-        let here = Orbit::of::<true>(squares, m, energy, norm, moments);
+        let kind = Kind::of(energy, norm, moments);
+        let points = points((1.0 - kind.parameter).sqrt());
+        let beside = |energy| {
+            Orbit::of::<false>(points, Kind::of(energy, norm, moments), m, energy, norm, moments).here
+        };
+        let here = Orbit::of::<true>(points, kind, m, energy, norm, moments);
         let (below, above) = (beside(energy - step), beside(energy + step));
         let slope = |below: f64, above: f64| (above - below) / (2.0 * step);
         let slope = Means {
@@ -208,34 +222,30 @@ impl Orbit {
         (finite(&here.here) && finite(&slope)).then_some(Orbit { slope, ..here })
     }
 
-    /// The means of the orbit with the energy `energy` and |m| = `norm`, not of a pure spin, over points with these squares of sines; the
+    /// The means of the orbit of this `kind`, with the energy `energy` and |m| = `norm`, not of a pure spin, over `points` points; the
     /// slopes are left out, and what has none unless all is asked for.
     fn of<const ALL: bool>(
-        sines_squared: &[f64],
+        points: usize,
+        kind: Kind,
         start: Vec3<f64>,
         energy: f64,
         norm: f64,
         moments: Vec3<f64>,
     ) -> Orbit {
-        let Kind { axes: [a, b, c], squares: [a2, b2, c2], parameter } = Kind::of(energy, norm, moments);
+        let Kind { axes: [a, b, c], squares: [a2, b2, c2], parameter } = kind;
         let (ia, ic) = (moments[a], moments[c]);
-        let complement = 1.0 - parameter;
-        let modulus = Modulus::new(complement);
+        let modulus = Modulus::new(1.0 - parameter);
         let quarter = modulus.quarter_period();
         let rate = ((ic - ia) / (ia * ic)).abs() * (a2 * c2 / b2).sqrt();
-        let mut points = [0.0; MOST_POINTS];
-        let points = &mut points[..sines_squared.len()];
-        points.copy_from_slice(sines_squared);
-        modulus.sn_squared(points);
-        let share = 1.0 / points.len() as f64;
+        let [squares_a, squares_b, squares_c, turns] =
+            at_points(&modulus, &kind, [energy, norm, ia], &SINES_SQUARED[points]);
+        let share = 1.0 / points as f64;
         let mut here = Means { period: 4.0 * quarter / rate, turn: 0.0, products: [0.0; 3] };
         let (mut squares, mut omega_squared) = ([0.0; 6], 0.0);
-        for &sn2 in &*points {
-            let cn2 = 1.0 - sn2;
+        let along = squares_a.iter().zip(&squares_b).zip(&squares_c);
+        for (((s_a, s_b), s_c), turn) in along.zip(&turns).take(points) {
             let mut s = [0.0; 3];
-            (s[a], s[b], s[c]) = (a2 * (complement + parameter * cn2), b2 * sn2, c2 * cn2);
-            let along = s[a].sqrt();
-            let turn = (2.0 * energy / norm + along / ia) / (1.0 + along / norm);
+            (s[a], s[b], s[c]) = (*s_a, *s_b, *s_c);
             here.turn += turn * share;
             let p = [0, 1, 2].map(|k| s[(k + 1) % 3] * s[(k + 2) % 3]);
             for (product, p) in here.products.iter_mut().zip(p) {
@@ -253,6 +263,28 @@ impl Orbit {
         let slope = Means { period: 0.0, turn: 0.0, products: [0.0; 3] };
         Orbit { start, energy, norm, here, slope, squares, omega_squared }
     }
+}
+
+/// m_a², m_b² and m_c² at the points whose sines are squared, and the rate at which the body turns about L: no point waits for another.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl", "x86_64+avx2"))]
+fn at_points(
+    modulus: &Modulus<f64>,
+    kind: &Kind,
+    [energy, norm, ia]: [f64; 3],
+    sines_squared: &AtPoints,
+) -> [AtPoints; 4] {
+    let Kind { squares: [a2, b2, c2], parameter, .. } = *kind;
+    let complement = 1.0 - parameter;
+    let mut squares = *sines_squared;
+    modulus.sn_squared(&mut squares);
+    let [mut s_a, mut s_b, mut s_c, mut turns] = [[0.0; MOST_POINTS]; 4];
+    for (n, &sn2) in squares.iter().enumerate() {
+        let cn2 = 1.0 - sn2;
+        (s_a[n], s_b[n], s_c[n]) = (a2 * (complement + parameter * cn2), b2 * sn2, c2 * cn2);
+        let along = s_a[n].sqrt();
+        turns[n] = (2.0 * energy / norm + along / ia) / (1.0 + along / norm);
+    }
+    [s_a, s_b, s_c, turns]
 }
 
 /// Which axis of an orbit has which of Jacobi's functions, dn, sn and cn, the squares of their amplitudes, and m = k².

@@ -77,6 +77,7 @@ impl<S: Precise> Modulus<S> {
 
     /// Takes sin² z to sn²(2 K z/π) for each of `squares`, by Gauss's transformation (NIST DLMF 22.7(i)): the arguments do not
     /// wait for each other.
+    #[inline(always)]
     pub(crate) fn sn_squared(&self, squares: &mut [S]) {
         let one = S::of(1.0);
         for &(arithmetic, geometric) in self.ladder[..self.steps].iter().rev() {
