@@ -560,7 +560,7 @@ mod tests {
         let rates = fitted_rates(&free);
         let scatter = rates[0].rates.iter().map(|w| w * w.transpose()).sum::<Matrix3<f64>>();
         // Σ ω·J ω by the entries of J, of which the products come twice
-        let by_entries = SMatrix::<f64, 6, 1>::from_fn(|k, _| {
+        let by_entries = nalgebra::Vector6::from_fn(|k, _| {
             let (a, b) = ENTRIES[k];
             if a == b { scatter[(a, b)] } else { 2.0 * scatter[(a, b)] }
         });
