@@ -4,8 +4,8 @@ use nalgebra::{Matrix3, Vector3};
 use polhode::{inertia as masses, record};
 use polhode_files::ReadAs;
 use polhode_fit::{
-    self as fits, Attached, CarrierError, CarrierRecords, FitError, Flights, ProofBody, Settings, during,
-    fit_carrier, flights,
+    self as fits, Attached, CarrierError, CarrierRecords, FitError, ProofBody, Settings, during, fit_carrier,
+    flights,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -302,13 +302,14 @@ impl Tumbles {
         let mut warnings = Vec::new();
         let mut free = |attached: Attached, record: record::Record| -> Result<record::Record, CarrierError> {
             let of_record = |error: FitError| CarrierError::Record { attached, error: Box::new(error) };
-            let Flights { list, whole, .. } = flights(&record, settings).map_err(of_record)?;
-            if whole {
+            let found = flights(&record, settings).map_err(of_record)?;
+            if found.whole {
                 return Ok(record);
             }
             let remark = "the record as a whole is not that of a free body: the fit uses the flights that were found in it";
-            warnings.push(format!("{attached}: {remark}, {} of them", list.len()));
-            Ok(during(&record, &list))
+            warnings.push(format!("{attached}: {remark}, {} of them", found.list.len()));
+            warnings.extend(found.remark_on_others().map(|remark| format!("{attached}: {remark}")));
+            Ok(during(&record, &found.list))
         };
         let mut records = CarrierRecords::new(free(Attached::Nothing, self.carrier)?);
         if let Some((record, body)) = self.proof {

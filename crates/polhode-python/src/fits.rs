@@ -5,8 +5,8 @@ use polhode::audit::{Attitudes, Direction, QuaternionOrder, Reading, Trajectory}
 use polhode::record::{self, Segment};
 use polhode_files::ReadAs;
 use polhode_fit::{
-    self as fits, FitError, Flight, Flights, Known, Limit, Poses, Prior, SensorPriors, Settings, TorqueModel,
-    during, flights,
+    self as fits, FitError, Flights, Known, Limit, Poses, Prior, SensorPriors, Settings, TorqueModel, during,
+    flights,
 };
 use pyo3::prelude::*;
 
@@ -146,15 +146,17 @@ pub(crate) fn fitted(
         .with_quantum(sigma("quantum", quantum)?)
         .with_sensor(priors([gyro_bias, gyro_scale, gyro_axis_scales, gyro_misalignment, gyro_skew])?);
     let unused = measured.unused();
-    let (found, flights, is_part) = aside(py, move |_| measured.fitted(&settings))?.map_err(refused)?;
+    let (found, flights) = aside(py, move |_| measured.fitted(&settings))?.map_err(refused)?;
     let mut warnings: Vec<String> = found.warnings.iter().map(ToString::to_string).collect();
-    if is_part {
+    if let Some(flights) = flights.as_ref().filter(|flights| !flights.whole) {
         warnings.push(format!(
             "the record as a whole is not that of a free body: the fit uses the flights that were found in it, {} of them; windows \
              names others",
-            flights.len()
+            flights.list.len()
         ));
+        warnings.extend(flights.remark_on_others());
     }
+    let flights = flights.map_or_else(Vec::new, |flights| flights.list);
     warnings.iter().try_for_each(|warning| warn(py, warning))?;
     Ok(Estimate { found, flights, unused, read_as, warnings })
 }
@@ -245,22 +247,17 @@ impl Measured {
         names
     }
 
-    /// The estimate; each flight that was found, and whether these are only part of the record.
-    fn fitted(self, settings: &Settings) -> Result<(fits::Estimate, Vec<Flight>, bool), FitError> {
-        let (mut record, whole) = match self {
-            Measured::Attitudes(poses) => return Ok((fits::fit_poses(&poses, settings)?, Vec::new(), false)),
+    /// The estimate, and the flights of a record that was not cut.
+    fn fitted(self, settings: &Settings) -> Result<(fits::Estimate, Option<Flights>), FitError> {
+        let (mut record, is_whole) = match self {
+            Measured::Attitudes(poses) => return Ok((fits::fit_poses(&poses, settings)?, None)),
             Measured::Rates { record, whole } => (record, whole),
         };
-        let (mut spans, mut is_part) = (Vec::new(), false);
-        if whole {
-            let Flights { list, whole, .. } = flights(&record, settings)?;
-            is_part = !whole;
-            if is_part {
-                record = during(&record, &list);
-            }
-            spans = list;
+        let found = is_whole.then(|| flights(&record, settings)).transpose()?;
+        if let Some(found) = found.as_ref().filter(|found| !found.whole) {
+            record = during(&record, &found.list);
         }
-        Ok((fits::fit(&record, settings)?, spans, is_part))
+        Ok((fits::fit(&record, settings)?, found))
     }
 }
 

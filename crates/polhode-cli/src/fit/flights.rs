@@ -17,7 +17,9 @@ pub(super) struct Spans {
 impl Spans {
     /// The flights of a record, and the record cut down to them where it is not free as a whole.
     pub(super) fn find(record: &mut Record, settings: &Settings) -> Result<Spans, FitError> {
-        let Flights { list, whole, .. } = flights(record, settings)?;
+        let found = flights(record, settings)?;
+        let others = found.remark_on_others();
+        let Flights { list, whole, .. } = found;
         if whole {
             return Ok(Spans { list, ..Spans::default() });
         }
@@ -34,7 +36,8 @@ impl Spans {
         };
         let remark = format!(
             "the record as a whole is not that of a free body: the fit uses {count}, {free:.2} s of {all:.2} s in which \
-             the body rotates freely; --window names others"
+             the body rotates freely; --window names others{}",
+            others.map_or_else(String::new, |others| format!("; {others}"))
         );
         *record = during(record, &list);
         Ok(Spans { list, sources, remark: Some(remark) })

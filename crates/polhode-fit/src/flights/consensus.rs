@@ -40,14 +40,19 @@ pub(super) struct NoConsensus {
     pub(super) least: Option<f64>,
 }
 
-fn windows(all: &[Vec<Test>], speed: f64, variance: f64) -> Vec<Window> {
+/// Those without a test that is `taken`.
+fn windows(all: &[Vec<Test>], taken: &[Vec<bool>], speed: f64, variance: f64) -> Vec<Window> {
     let mut windows = Vec::new();
+    let is_taken = |stretch: usize, first: usize| {
+        let own = taken.get(stretch).and_then(|taken| taken.get(first..first + WINDOW));
+        own.is_some_and(|own| own.contains(&true))
+    };
     let (prior, sphere) = (precisions(speed), Vector::zeros());
     for (stretch, tests) in all.iter().enumerate() {
         let Some(last) = tests.len().checked_sub(WINDOW) else { continue };
         for first in (0..last).step_by(STRIDE).chain([last]) {
             let own = &tests[first..first + WINDOW];
-            if own.iter().any(|test| test.is_slow(speed)) {
+            if own.iter().any(|test| test.is_slow(speed)) || is_taken(stretch, first) {
                 continue;
             }
             let mut normal = Normal::prior(&prior, &sphere);
@@ -69,7 +74,17 @@ fn is_possible(x: &Coordinates) -> bool {
 
 /// The tensor that most windows agree on, each with its own drag.
 pub(super) fn consensus(all: &[Vec<Test>], speed: f64, variance: f64) -> Result<Consensus, NoConsensus> {
-    let windows = windows(all, speed, variance);
+    consensus_beside(&[], all, speed, variance)
+}
+
+/// The same of the tests that are not `taken`.
+pub(super) fn consensus_beside(
+    taken: &[Vec<bool>],
+    all: &[Vec<Test>],
+    speed: f64,
+    variance: f64,
+) -> Result<Consensus, NoConsensus> {
+    let windows = windows(all, taken, speed, variance);
     let agrees = |window: &Window, x: &Coordinates| window.sums.mean_square(x) < 1.0;
     let mut proposals: Vec<&Window> =
         windows.iter().filter(|w| agrees(w, &w.own) && is_possible(&w.own)).collect();
@@ -197,7 +212,7 @@ mod tests {
     fn windows_begin_at_every_second_test() {
         let all = recording(0.0);
         let firsts = |parts: &[Vec<Test>], speed: f64| -> Vec<(usize, usize)> {
-            windows(parts, speed, 1e-8).iter().map(|window| (window.stretch, window.first)).collect()
+            windows(parts, &[], speed, 1e-8).iter().map(|window| (window.stretch, window.first)).collect()
         };
         assert!(firsts(&[all[..11].to_vec()], 1.0).is_empty());
         assert_eq!(firsts(&[all[..12].to_vec()], 1.0), [(0, 0)]);
@@ -206,7 +221,7 @@ mod tests {
         assert!(firsts(&parts, 1e3).is_empty());
         // the tensor of the body leaves no more than its prior
         let x = coordinates(&body());
-        assert!(windows(&parts, 1.0, 1e-8).iter().all(|window| window.sums.mean_square(&x) < 0.01));
+        assert!(windows(&parts, &[], 1.0, 1e-8).iter().all(|window| window.sums.mean_square(&x) < 0.01));
     }
 
     /// The tensor that most windows agree on is that of the body, and the tests that a hand touches are not free.

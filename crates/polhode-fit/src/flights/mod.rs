@@ -13,7 +13,7 @@ mod extent;
 pub(crate) mod flight;
 
 use crate::flights::flight::{Flight, FlightLimit};
-use crate::thresholds::flights::MOST_TORQUE;
+use crate::thresholds::flights::{MOST_TORQUE, OTHERS};
 use crate::thresholds::noise::LEAST;
 
 use nalgebra::Vector3;
@@ -27,7 +27,7 @@ use crate::signal::stretch::Stretch;
 use crate::thresholds::test_functions::SAMPLES_PER_TEST;
 use crate::units::Motion;
 use crate::verdict::units::open_units;
-use consensus::{Contradiction, NoConsensus, consensus};
+use consensus::{Consensus, Contradiction, NoConsensus, consensus, consensus_beside};
 use equations::{Test, tests};
 use extent::{Extent, extent, runs};
 
@@ -45,6 +45,27 @@ pub struct Flights {
     pub list: Vec<Flight>,
     /// Whether the record as a whole may be that of one free body: its flights are then its segments.
     pub whole: bool,
+    /// Where the readings are those of a free body too, but of another tensor: an axis may have changed its sign there, two may have been
+    /// exchanged, or it is another body.
+    pub others: Vec<Flight>,
+}
+
+impl Flights {
+    /// What is to be said of the spans with another tensor.
+    #[must_use]
+    pub fn remark_on_others(&self) -> Option<String> {
+        let first = self.others.first()?;
+        let more = match self.others.len() - 1 {
+            0 => String::new(),
+            1 => ", and in one more span,".into(),
+            more => format!(", and in {more} more spans,"),
+        };
+        Some(format!(
+            "from {:.3} s to {:.3} s{more} the readings are those of a free body with another tensor: an axis of the sensor changes its \
+             sign or its place, or it is another body; fit each part by itself",
+            first.start, first.end
+        ))
+    }
 }
 
 /// Finds the spans of a record in which the body rotates freely, but for drag; [`during`] cuts them out.
@@ -109,21 +130,34 @@ pub fn flights(record: &Record, settings: &Settings) -> Result<Flights, FitError
     };
     let agreed = consensus(&all, speed, variance)
         .map_err(|NoConsensus { least }| none(least.map(|least| MOST_TORQUE * least.sqrt())))?;
-    let mut list: Vec<Flight> = Vec::new();
-    for (stretch, (tests, free)) in stretches.iter().zip(all.iter().zip(&agreed.free)) {
-        let segment = stretch.segment;
-        let extents = runs(free).into_iter().filter_map(|run| extent(tests, run, &agreed.x, speed, variance));
-        for found in extents {
-            let span = [
-                (tests[found.tests.start].centre - radius) / rms,
-                (tests[found.tests.end - 1].centre + radius) / rms,
-            ];
-            // neighbours that a short blow parts share no sample
-            let last = list.last().filter(|last| last.segment == segment).map(|last| last.end);
-            list.extend(flight(&record.segments[segment], stretch, rms, span, &found, last));
+    let flights_of = |agreed: &Consensus| {
+        let mut list: Vec<Flight> = Vec::new();
+        for (stretch, (tests, free)) in stretches.iter().zip(all.iter().zip(&agreed.free)) {
+            let segment = stretch.segment;
+            let extents =
+                runs(free).into_iter().filter_map(|run| extent(tests, run, &agreed.x, speed, variance));
+            for found in extents {
+                let span = [
+                    (tests[found.tests.start].centre - radius) / rms,
+                    (tests[found.tests.end - 1].centre + radius) / rms,
+                ];
+                // neighbours that a short blow parts share no sample
+                let last = list.last().filter(|last| last.segment == segment).map(|last| last.end);
+                list.extend(flight(&record.segments[segment], stretch, rms, span, &found, last));
+            }
         }
+        list
+    };
+    let list = flights_of(&agreed);
+    if list.is_empty() {
+        return Err(none(None));
     }
-    if list.is_empty() { Err(none(None)) } else { Ok(Flights { list, whole: false }) }
+    let rest = consensus_beside(&agreed.free, &all, speed, variance);
+    let mut others = rest.map_or_else(|_| Vec::new(), |agreed| flights_of(&agreed));
+    // a hand may lead the body for a moment as if it were free
+    let most = list.iter().map(|flight| flight.turned).fold(0.0, f64::max);
+    others.retain(|other| other.turned > OTHERS * most);
+    Ok(Flights { list, whole: false, others })
 }
 
 /// Every segment as one flight.
@@ -141,7 +175,7 @@ fn whole(record: &Record) -> Flights {
             after,
         })
     });
-    Flights { list: each.collect(), whole: true }
+    Flights { list: each.collect(), whole: true, others: Vec::new() }
 }
 
 /// The samples of a segment in a span of seconds from the start of a stretch of it, those up to `last` left out; `None` where there are

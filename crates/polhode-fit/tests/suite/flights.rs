@@ -105,6 +105,7 @@ fn each_throw_of_a_recording_is_found_and_nothing_else() {
             let found = flights(&record, &Settings::default()).unwrap();
             assert!(!found.whole);
             assert_eq!(found.list.len(), throws.len(), "{name} {seed}: {:?}", found.list);
+            assert!(found.others.is_empty() && found.remark_on_others().is_none(), "{:?}", found.others);
             for (flight, (start, end)) in found.list.iter().zip(&throws) {
                 // half a radian at either end
                 let margin = 0.06;
@@ -127,6 +128,33 @@ fn each_throw_of_a_recording_is_found_and_nothing_else() {
                 assert!(off < 5.0, "{name} {seed}: I{} is {off} deviations off", k + 1);
             }
         }
+    }
+}
+
+/// A sensor whose axes change within a record reads two bodies: one is fitted, and where the other is read is said.
+#[test]
+fn what_another_tensor_explains_is_named() {
+    let body = Inertia::from_moments(BODY).unwrap();
+    let times: Vec<f64> = (0..2000).map(|i| f64::from(i) * STEP).collect();
+    let start = Vector3::new(3.0, 8.0, 4.0);
+    let read =
+        simulate_with(&body, start, &times, &Disturbances::default(), &noise(1e-2), &mut Random::new(3));
+    let read = read.unwrap();
+    let changes: [fn(Vector3<f64>) -> Vector3<f64>; 2] =
+        [|w| Vector3::new(w.y, w.z, w.x), |w| Vector3::new(w.x, -w.y, w.z)];
+    for (change, from) in changes.into_iter().zip([1000, 1400]) {
+        let rates: Vec<_> =
+            read.iter().enumerate().map(|(i, w)| if i < from { *w } else { change(*w) }).collect();
+        let found = flights(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap();
+        let ([one], [other]) = (&found.list[..], &found.others[..]) else { panic!("{found:?}") };
+        let mut spans = [(one.start, one.end), (other.start, other.end)];
+        spans.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let border = from as f64 * STEP;
+        let near = |time: f64, expected: f64| (time - expected).abs() < 0.1;
+        assert!(near(spans[0].0, 0.0) && near(spans[0].1, border), "{spans:?}");
+        assert!(near(spans[1].0, border) && near(spans[1].1, 19.99), "{spans:?}");
+        let remark = found.remark_on_others().unwrap();
+        assert!(remark.starts_with(&format!("from {:.3} s to {:.3} s the readings", other.start, other.end)));
     }
 }
 
