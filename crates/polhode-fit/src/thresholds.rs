@@ -442,7 +442,7 @@ thresholds! {
         STRIDE: usize = 2, "tests by which the next window begins later", UNMEASURED;
         MOST_TORQUE: f64 = 0.02,
             "torque of a free window that drag does not explain, over tr(J) |w|^2", "each_throw_of_a_recording_is_found_and_nothing_else";
-        OTHERS: f64 = 0.25,
+        OTHERS: f64 = 0.1,
             "turn of a span with another tensor, over that of the longest flight, from which on it is named", UNMEASURED;
         DRAG: f64 = 0.03, "deviation of the drag that is expected: momentum lost in a turn by one radian", UNMEASURED;
         TRIED: usize = 100, "windows whose tensors are tried", UNMEASURED;

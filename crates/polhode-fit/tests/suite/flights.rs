@@ -141,8 +141,9 @@ fn what_another_tensor_explains_is_named() {
         simulate_with(&body, start, &times, &Disturbances::default(), &noise(1e-2), &mut Random::new(3));
     let read = read.unwrap();
     let changes: [fn(Vector3<f64>) -> Vector3<f64>; 2] =
-        [|w| Vector3::new(w.y, w.z, w.x), |w| Vector3::new(w.x, -w.y, w.z)];
-    for (change, from) in changes.into_iter().zip([1000, 1400]) {
+        [|w| Vector3::new(w.y, w.x, w.z), |w| Vector3::new(w.x, -w.y, w.z)];
+    for change in changes {
+        let from = 600;
         let rates: Vec<_> =
             read.iter().enumerate().map(|(i, w)| if i < from { *w } else { change(*w) }).collect();
         let found = flights(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap();
