@@ -1,7 +1,7 @@
 //! Events are found where they are, none is missed that the bounds exclude, and looking between steps changes no bit.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use polhode::body::{Body, Force, Problem, State};
+use polhode::body::{Body, Force, Problem, State, Wheel};
 use polhode::events::{Crossing, Event, EventError};
 use polhode::flow::{ExactMotion, FreeMotion};
 use polhode::inertia::Inertia;
@@ -192,6 +192,22 @@ fn what_stays_at_its_limit_is_found_once() {
         assert!(found.iter().all(|one| one.crossing == Crossing::AtStart), "{off:e}: {found:?}");
         assert_eq!(found.len(), count, "{off:e}");
     }
+}
+
+/// Of a body whose wheel has a thousand times its momentum the rate has the rounding of that of the wheel, which is no event either.
+#[test]
+fn rounding_of_a_fast_wheel_is_no_event() {
+    let wheel = Wheel::new(Vector3::z(), 0.1, 1e4).unwrap();
+    let body = Body::free(Inertia::from_moments([1.0, 1.0, 2.0]).unwrap()).with_wheel(wheel).unwrap();
+    let begin = body.state(UnitQuaternion::identity(), Vector3::new(1.0, 0.0, 0.5)).unwrap();
+    let motion = ExactMotion::new(&body, &begin).unwrap();
+    let rate = 1.25_f64.sqrt();
+    let events = [Event::rate_above(&body, rate).unwrap(), Event::rate_below(&body, rate).unwrap()];
+    let found = motion.events(&events, 0.0, 0.5, 0.1).unwrap().found;
+    assert!(found.len() == 2 && found.iter().all(|one| one.crossing == Crossing::AtStart), "{found:?}");
+    // one that is further off is told
+    let beyond = Event::rate_above(&body, rate + 1e-11).unwrap();
+    assert!(motion.events(&[beyond], 0.0, 0.5, 0.1).unwrap().found.is_empty());
 }
 
 /// Of a steady spin the momentum along the middle axis is rounding, whose signs are no flips; nor do they jump.

@@ -180,7 +180,7 @@ impl<'a> Search<'a> {
     fn look(&mut self, time: Dd, state: &State) -> Result<Look, EventError> {
         self.looks += 1;
         for (noise, event) in self.noise.iter_mut().zip(self.events) {
-            *noise = event.noise(state);
+            *noise = event.noise(time.to_f64(), state);
         }
         let values = self.events.iter().map(|event| value(event, time, state));
         Ok(Look { time, values: values.collect::<Result<_, _>>()? })

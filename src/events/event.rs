@@ -8,17 +8,6 @@ use crate::body::State;
 /// A function of time (s) and state.
 type Law = Arc<dyn Fn(f64, &State) -> f64 + Send + Sync>;
 
-/// What rounding makes of g where it is zero.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Noise {
-    /// Nobody knows, and every sign counts.
-    Unknown,
-    /// So much.
-    Of(f64),
-    /// So much of the largest component of the momentum.
-    OfMomentum(f64),
-}
-
 /// Something that happens along a motion: a change of sign of a function g of the time and the state.
 ///
 /// ```
@@ -45,7 +34,8 @@ pub struct Event {
     pub(super) lasts: bool,
     pub(super) stops: bool,
     pub(super) bound: Bound,
-    noise: Noise,
+    /// What rounding makes of g where it is zero; where nobody knows, every sign counts.
+    noise: Option<Law>,
 }
 
 /// Which changes of sign count.
@@ -79,7 +69,7 @@ impl Event {
             lasts: false,
             stops: false,
             bound: Bound::Unknown,
-            noise: Noise::Unknown,
+            noise: None,
         }
     }
 
@@ -129,17 +119,13 @@ impl Event {
     }
 
     /// A value within `noise` has no sign.
-    pub(super) fn known_to(self, noise: Noise) -> Self {
-        Event { noise, ..self }
+    pub(super) fn known_to(self, noise: impl Fn(f64, &State) -> f64 + Send + Sync + 'static) -> Self {
+        Event { noise: Some(Arc::new(noise)), ..self }
     }
 
-    /// What is zero to rounding at the state `x`.
-    pub(super) fn noise(&self, x: &State) -> f64 {
-        match self.noise {
-            Noise::Unknown => 0.0,
-            Noise::Of(noise) => noise,
-            Noise::OfMomentum(share) => share * x.momentum_body.magnitude(),
-        }
+    /// What is zero to rounding at the time `t`, s, and the state `x`.
+    pub(super) fn noise(&self, t: f64, x: &State) -> f64 {
+        self.noise.as_ref().map_or(0.0, |noise| noise(t, x))
     }
 
     /// Whether the rate of g is bounded: closed forms then [miss](super) no event between looks, and runs may.

@@ -2,17 +2,22 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 
-use super::event::{Bound, Noise};
+use super::event::Bound;
 use super::{Event, EventError};
 use crate::body::{Body, State};
 use crate::rotation::{Quat, Vec3};
 
-/// Rounding of an angle of axes, and of a rate as a share of it: several times what attitudes and their products have.
+/// Rounding of an angle of axes, and of a momentum as a share of it: several times what attitudes and their products have.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Angle between two vectors, rad, exact to rounding at every angle.
 fn angle(a: Vec3<f64>, b: Vec3<f64>) -> f64 {
     libm::atan2(a.cross(b).norm(), a.dot(b))
+}
+
+/// Momentum of the wheels of `body` at the time `t`, s; the momentum without it has its rounding.
+fn of_wheels(body: &Body, t: f64) -> f64 {
+    body.momentum_of_wheels_at(t).norm()
 }
 
 fn axis(quantity: &'static str, of: Vector3<f64>) -> Result<Vec3<f64>, EventError> {
@@ -29,9 +34,10 @@ impl Event {
     pub fn flip(body: &Body) -> Self {
         let axis: Vec3<f64> = (body.inertia().principal_axes() * Vector3::y()).into();
         let [_, moment, _] = body.inertia().principal_moments();
+        let body = body.clone();
         Event::zero("flip", move |_, x| x.momentum_body.dot(axis) / moment)
             .bounded(Bound::PerRate(1.0))
-            .known_to(Noise::OfMomentum(ROUNDING / moment))
+            .known_to(move |t, x| ROUNDING / moment * (x.momentum_body.magnitude() + of_wheels(&body, t)))
     }
 
     /// The axis `of_body` (body axes) comes nearer to `in_space` (space axes) than `half_angle`, rad; from outside to inside.
@@ -50,7 +56,7 @@ impl Event {
         }
         let law = move |_: f64, x: &State| half_angle - angle(x.attitude.rotate(a), b);
         let event = Event::zero("enters cone", law).lasting().bounded(Bound::PerRadian(1.0));
-        Ok(event.known_to(Noise::Of(ROUNDING)))
+        Ok(event.known_to(|_, _| ROUNDING))
     }
 
     /// |ω| of `body` rises above `limit`, rad/s.
@@ -74,10 +80,11 @@ impl Event {
             let rule = "it must be a positive number of rad/s";
             return Err(EventError::Parameter { quantity: "the rate", value: limit, rule });
         }
-        let body = body.clone();
+        let [least, ..] = body.inertia().principal_moments();
+        let (body, carrier) = (body.clone(), body.clone());
         let law = move |_: f64, x: &State| sign * (body.omega_body(x).norm() - limit);
         let event = Event::zero(name, law).lasting().bounded(Bound::PerRate(1.0));
-        Ok(event.known_to(Noise::Of(ROUNDING * limit)))
+        Ok(event.known_to(move |t, _| ROUNDING * (limit + of_wheels(&carrier, t) / least)))
     }
 
     /// The attitude of `body` is as near to `target` (body → space) as it comes: the angle between them begins to grow.
@@ -91,6 +98,6 @@ impl Event {
             if rate > 0.0 { 2.0 * from_target.w * from_target.v.dot(omega) / rate } else { 0.0 }
         })
         .rising()
-        .known_to(Noise::Of(ROUNDING))
+        .known_to(|_, _| ROUNDING)
     }
 }
