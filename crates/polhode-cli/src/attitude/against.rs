@@ -1,5 +1,6 @@
 //! The attitudes of a reference.
 
+use std::collections::VecDeque;
 use std::path::Path;
 
 use nalgebra::UnitQuaternion;
@@ -19,7 +20,7 @@ const SAME_TIME: f64 = 1e-6;
 /// freedom.
 const RADIUS: f64 = 2.795;
 
-/// An error of so many times the 95 % of its budget is none of it.
+/// An error of so many times the 95 % of its budget is none of it, and of so many times the median error no noise of the reference.
 const FAR: f64 = 10.0;
 
 /// An attitude of the reference is off by so many of what its quaternions are off the norm 1, which their digits leave.
@@ -36,16 +37,17 @@ pub(super) struct Reference {
     /// What its digits leave open, rad.
     resolution: f64,
     /// Attitudes that were to be compared, those of them at a time of the reference, and of these the ones whose error is inside the 95 %
-    /// of its budget, in its direction or by its size, those beyond twice of it, and those far beyond.
+    /// of its budget, in its direction or by its size.
     asked: usize,
     compared: usize,
     inside: usize,
+    /// Times of starts that were taken from it, which then have no error, until they are compared.
+    pub(super) starts: VecDeque<f64>,
+    /// The errors of the others, rad: how many are outside of their 95 % and beyond twice of it, and times and sizes of those far beyond.
+    errors: Vec<f64>,
+    outside: usize,
     beyond: usize,
-    far: usize,
-    /// When the first is far beyond.
-    far_at: f64,
-    /// How often a start was taken from it, which then has no error.
-    pub(super) given: usize,
+    far: Vec<(f64, f64)>,
     largest: f64,
     at: f64,
 }
@@ -76,10 +78,11 @@ impl Reference {
             asked: 0,
             compared: 0,
             inside: 0,
+            starts: VecDeque::new(),
+            errors: Vec::new(),
+            outside: 0,
             beyond: 0,
-            far: 0,
-            far_at: 0.0,
-            given: 0,
+            far: Vec::new(),
             largest: 0.0,
             at: 0.0,
         })
@@ -113,12 +116,18 @@ impl Reference {
         self.compared += 1;
         // of a budget that is little but truncation the ellipsoid is flat
         let within = RADIUS * estimate.budget.sigma();
-        self.inside += usize::from(angle <= within || estimate.holds(truth));
-        let rounding = self.resolution + 8.0 * f64::EPSILON * self.asked as f64;
-        self.beyond += usize::from(angle > 2.0 * within + rounding);
-        if angle > FAR * within + rounding {
-            self.far_at = if self.far == 0 { estimate.time } else { self.far_at };
-            self.far += 1;
+        let is_inside = angle <= within || estimate.holds(truth);
+        self.inside += usize::from(is_inside);
+        if let Some(k) = self.starts.iter().position(|start| *start == estimate.time) {
+            self.starts.drain(..=k);
+        } else {
+            let rounding = self.resolution + 8.0 * f64::EPSILON * self.asked as f64;
+            self.errors.push(angle);
+            self.outside += usize::from(!is_inside);
+            self.beyond += usize::from(angle > 2.0 * within + rounding);
+            if angle > FAR * within + rounding {
+                self.far.push((estimate.time, angle));
+            }
         }
         if angle > self.largest {
             (self.largest, self.at) = (angle, estimate.time);
@@ -140,24 +149,24 @@ impl Reference {
         Err(Error::input("--against", &self.name, rule, remedy))
     }
 
-    /// Refuses attitudes of the record `name` most of which are beyond twice the 95 % of their budget, or any of which is far beyond: it
-    /// is not their error. Starts that were taken from the reference say nothing of the others.
+    /// Refuses attitudes of the record `name` most of which are beyond twice the 95 % of their budget, or any of which is [far](Self::far)
+    /// beyond: it is not their error. Starts that were taken from the reference say nothing of the others.
     pub(super) fn judge(&self, name: &str) -> Result<(), Error> {
-        let (reference, compared) = (&self.name, self.compared);
-        let failure = if self.is_start_alone() {
+        let (reference, errors) = (&self.name, self.errors.len());
+        let failure = if errors == 0 {
             format!(
-                "{name}: no attitude behind the start is at a time of {reference}, and nothing is compared"
+                "{name}: no attitude after the start is at a time of {reference}, and nothing is compared"
             )
-        } else if 2 * self.beyond > compared {
+        } else if 2 * self.beyond > errors {
             let beyond = self.beyond;
             format!(
-                "{name}: {reference} contradicts the attitudes: {beyond} of {compared} errors are beyond twice their 95 %"
+                "{name}: {reference} contradicts the attitudes: {beyond} of {errors} errors are beyond twice their 95 %"
             )
-        } else if self.far > 0 {
-            let (far, at) = (self.far, rounded(self.far_at));
+        } else if let Some((far, at)) = self.far() {
+            let at = rounded(at);
             format!(
-                "{name}: {reference} contradicts the attitudes: {far} of {compared} errors are beyond ten times their 95 %, the first at \
-                 t = {at} s"
+                "{name}: {reference} contradicts the attitudes: {far} of {errors} errors are beyond ten times their 95 % and ten times \
+                 the median error, the first at t = {at} s"
             )
         } else {
             return Ok(());
@@ -165,19 +174,26 @@ impl Reference {
         Err(Error::Failed(failure))
     }
 
-    fn is_start_alone(&self) -> bool {
-        self.compared <= self.given
+    /// How many errors are far beyond, and when the first is.
+    fn far(&self) -> Option<(usize, f64)> {
+        let mut errors = self.errors.clone();
+        let middle = errors.len().checked_sub(1)? / 2;
+        let (_, median, _) = errors.select_nth_unstable_by(middle, f64::total_cmp);
+        let mut far = self.far.iter().filter(|(_, angle)| *angle > FAR * *median);
+        let (first, _) = far.next()?;
+        Some((1 + far.count(), *first))
     }
 
     /// What the comparison found.
     pub(super) fn tell(&self) {
-        let verdict = if self.is_start_alone() {
-            "none is behind a start"
-        } else if 2 * self.beyond > self.compared {
+        let errors = self.errors.len();
+        let verdict = if errors == 0 {
+            "none of them after a start"
+        } else if 2 * self.beyond > errors {
             "the budget is contradicted"
-        } else if self.far > 0 {
+        } else if self.far().is_some() {
             "the budget does not hold everywhere"
-        } else if 2 * self.inside < self.compared {
+        } else if 2 * self.outside > errors {
             "the budget is too small"
         } else {
             "the budget holds"
@@ -185,9 +201,10 @@ impl Reference {
         tell(
             "note",
             &format!(
-                "{}: {} rows compared, read as {}; largest error {:.1e} rad at t = {} s, {} inside their 95 %: {verdict}",
+                "{}: {} {} compared, read as {}; largest error {:.1e} rad at t = {} s, {} inside their 95 %: {verdict}",
                 self.name,
                 self.compared,
+                if self.compared == 1 { "row" } else { "rows" },
                 self.reading
                     .attitude
                     .map_or(String::new(), |direction| direction.to_string().replace('-', " ")),
@@ -203,7 +220,7 @@ impl Reference {
                 self.name, self.compared
             ));
         }
-        if 2 * self.inside < self.compared && !self.is_start_alone() {
+        if 2 * self.outside > errors {
             warn(&format!(
                 "{}: most errors are beyond their 95 %; look at the units of the readings, the convention of the reference and the deviations that are given",
                 self.name

@@ -46,8 +46,8 @@ const EXAMPLES: &str = "Examples:
 /// its Magnus series. Order and number of samples are chosen from the record and its noise. Columns: t, q_w, q_x, q_y, q_z (body to
 /// space, scalar first), attitude_sigma (standard deviation of each component of the attitude error from all causes, rad), truncation
 /// (estimated error of the method, rad). The start counts as exact. Exit code 1: the standard deviation of an attitude exceeds 1 rad,
-/// most attitudes differ from those of --against by more than twice their 95 % error bound or any by more than ten times, or none
-/// but the start is at a time of --against.
+/// most attitudes differ from those of --against by more than twice their 95 % error bound, any by more than ten times of it and of the
+/// median difference, or none but the start is at a time of --against.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Attitude {
@@ -127,7 +127,7 @@ impl Attitude {
                     before => {
                         before.into_iter().for_each(|before| before.finish(&mut found));
                         if let (Some(reference), None) = (&mut reference, self.start) {
-                            reference.given += 1;
+                            reference.starts.extend(segment.times().first());
                         }
                         self.begin(&readings, segment, course, reference.as_ref())?
                     }

@@ -303,7 +303,7 @@ fn the_summary_says_whether_the_budget_holds() {
     let degrees = run(&format!("{line} --rate-unit deg/s"));
     assert_eq!((degrees.code, degrees.out.lines().count()), (1, 402), "{}", degrees.err);
     for part in
-        ["the budget is contradicted", "contradicts the attitudes: ", " of 401 errors are beyond twice"]
+        ["the budget is contradicted", "contradicts the attitudes: ", " of 400 errors are beyond twice"]
     {
         assert!(degrees.err.contains(part), "{part}: {}", degrees.err);
     }
@@ -334,7 +334,7 @@ fn one_wild_row_and_a_start_alone_are_no_agreement() {
     assert_eq!((answer.code, answer.out.lines().count()), (1, 402), "{}", answer.err);
     for part in [
         "400 inside their 95 %: the budget does not hold everywhere",
-        "1 of 401 errors are beyond ten times their 95 %, the first at t = 20 s",
+        "1 of 400 errors are beyond ten times their 95 % and ten times the median error, the first at t = 20 s",
     ] {
         assert!(answer.err.contains(part), "{part}: {}", answer.err);
     }
@@ -347,9 +347,51 @@ fn one_wild_row_and_a_start_alone_are_no_agreement() {
     });
     let slow = scratch.file("slow.csv", format!("{head}\n{}", slow.collect::<String>()));
     let answer = run(&format!("attitude {record} --kind rate --against {slow}"));
-    let says = "no attitude behind the start is at a time of ";
+    let says = "no attitude after the start is at a time of ";
     assert!(answer.code == 1 && answer.err.contains(says), "{}", answer.err);
-    assert!(!answer.err.contains("the budget holds"), "{}", answer.err);
+    assert!(
+        answer.err.contains("1 row compared") && !answer.err.contains("the budget holds"),
+        "{}",
+        answer.err
+    );
+}
+
+/// A reference with noise of its own is far off where the budget is small still, just after the start, and contradicts nothing; one that has but
+/// start and end, the end five times the 95 % of its budget off, does.
+#[test]
+fn noise_of_a_reference_is_told_from_attitudes_that_are_off() {
+    let scratch = Scratch::new("attitude-noisy");
+    let record = simulated(&scratch, "rates.csv", "--every 0.05 --noise 1e-3");
+    let text = std::fs::read_to_string(exact(&scratch, 0.05)).unwrap();
+    let (head, rows) = text.trim_end().split_once('\n').unwrap();
+    let count = rows.lines().count();
+    // attitudes of these rows, turned about body x by so much, rad
+    let turned = |name: &str, rows: &[usize], by: &dyn Fn(usize) -> f64| {
+        let row = |k: &usize| {
+            let cells: Vec<f64> =
+                text.lines().nth(k + 1).unwrap().split(',').map(|cell| cell.parse().unwrap()).collect();
+            let ([t, w, x, y, z], s) = (<[f64; 5]>::try_from(cells).unwrap(), 0.5 * by(*k));
+            let c = (1.0 - s * s).sqrt();
+            format!("\n{t},{},{},{},{}", w * c - x * s, x * c + w * s, y * c + z * s, z * c - y * s)
+        };
+        let path = scratch.file(name, head.to_string() + &rows.iter().map(row).collect::<String>());
+        run(&format!("attitude {record} --kind rate --against {path}"))
+    };
+    let all: Vec<usize> = (0..count).collect();
+    let noisy =
+        turned("noisy.csv", &all, &|k| if k == 0 { 0.0 } else { 2e-3 * (2.0 * (k % 2) as f64 - 1.0) });
+    assert_eq!(noisy.code, 0, "{}", noisy.err);
+    let [error, sigma] = ["attitude_error", "attitude_sigma"].map(|name| column(&noisy.out, name)[1]);
+    assert!(error > 10.0 * 2.795 * sigma, "{error} {sigma}");
+    let by = 5.0 * 2.795 * last(&column(&noisy.out, "attitude_sigma"));
+    let off = turned("off.csv", &[0, count - 1], &|k| if k == 0 { 0.0 } else { by });
+    let says = "1 of 1 errors are beyond twice their 95 %";
+    assert!(off.code == 1 && off.err.contains(says), "{}", off.err);
+    assert!(
+        off.err.contains("2 rows compared") && off.err.contains("the budget is contradicted"),
+        "{}",
+        off.err
+    );
 }
 
 /// Columns beside the readings, and beside the attitudes of a reference, are named.
