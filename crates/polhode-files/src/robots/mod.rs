@@ -244,6 +244,8 @@ mod tests {
                 urdf(&stated).replace("link", "Link"),
                 "<Link>: names of elements have small letters",
             ),
+            // as a plugin names a link
+            (Language::Urdf, urdf(&stated).replace("<link", "<plugin><Link>a</Link></plugin><link"), ""),
             (Language::Sdf, sdf(INERTIAL), ""),
             (Language::Sdf, sdf(&other(INERTIAL)), outside),
             (Language::Sdf, sdf("<plugin name='p'><mass>1</mass></plugin>"), ""),

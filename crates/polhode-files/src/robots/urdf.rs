@@ -22,7 +22,9 @@ pub(super) fn links(document: &Element) -> Vec<Given> {
         let defect = element.error("xacro is not expanded; name the URDF file that xacro writes");
         link(&format!("{}{file}", element.tag), element, Err(defect))
     });
-    let is_capital = |element: &&&Element| element.tag != "link" && element.tag.eq_ignore_ascii_case("link");
+    let is_capital = |element: &&&Element| {
+        element.tag != "link" && element.tag.eq_ignore_ascii_case("link") && is_link(element)
+    };
     let capital: Vec<&&Element> = all.iter().filter(is_capital).collect();
     let refused = capital.iter().map(|element| {
         let defect = element.error("names of elements have small letters; write <link>");
