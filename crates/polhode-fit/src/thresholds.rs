@@ -67,7 +67,7 @@ thresholds! {
     }
     axes: "axes that read nothing" {
         FEWEST: usize = 50,
-            "samples in which an axis may read one number by chance: at a noise of half a step a chance of 4e-9", DERIVED;
+            "samples in which an axis may read one number by chance: at a noise of half a step a chance of 5e-9", DERIVED;
         LEAST: f64 = 1e-5, "noise over the rates below which digits that a file leaves out may hold an axis still", DERIVED;
     }
     filtered: "noise of readings that was filtered before they were sampled" {

@@ -29,6 +29,7 @@ const EXAMPLES: &str = "Examples:
 /// `polhode ensemble --shard K/N` writes its shards to DIR/shards. All shards of one run must be there: with the same specification,
 /// seed, version and number of shards, and with unchanged files (the run.toml beside them has each SHA-256). The results in DIR are
 /// those of the run without shards, to the last bit, and their run.toml has the SHA-256 of each. The shards may then be removed.
+/// Exit code 1: every member failed.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Gather {

@@ -77,7 +77,7 @@ Examples:
 ///
 /// With --shard K/N, in a Slurm array or under an MPI launcher, only part K of N of the members is run. Processes that srun starts
 /// side by side need --shard. The results of a part, a shard, go to DIR/shards, and `polhode gather DIR` joins all shards. A shard
-/// that is finished is not run again.
+/// that is finished is not run again. Exit code 1: every member failed.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Ensemble {
