@@ -16,7 +16,7 @@ use serde_json::Value;
 use crate::arrays::{Numbers, array};
 use crate::bodies::Body;
 use crate::calm::aside;
-use crate::error::{of, refused};
+use crate::error::{keywords, of, refused};
 use crate::json::python;
 use crate::scalars::number;
 use crate::shown;
@@ -84,7 +84,7 @@ impl Verdict {
     }
 
     fn __repr__(&self) -> String {
-        text(&self.name, std::slice::from_ref(&self.outcome)).trim_end().into()
+        keywords(text(&self.name, std::slice::from_ref(&self.outcome)).trim_end())
     }
 
     /// The words with the figure of the errors.

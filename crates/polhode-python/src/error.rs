@@ -20,7 +20,7 @@ pub(crate) fn refused(error: impl std::fmt::Display) -> PyErr {
 }
 
 /// Words of the command with its flags as the keywords that they are here.
-fn keywords(text: &str) -> String {
+pub(crate) fn keywords(text: &str) -> String {
     let keyword = |word: &str| match word.strip_prefix("--") {
         Some(flag) if flag.starts_with(|c: char| c.is_ascii_lowercase()) => {
             let end = flag.find(|c: char| !c.is_ascii_lowercase() && c != '-').unwrap_or(flag.len());
@@ -28,7 +28,7 @@ fn keywords(text: &str) -> String {
         }
         _ => word.into(),
     };
-    text.split(' ').map(keyword).collect::<Vec<_>>().join(" ")
+    text.split_inclusive(char::is_whitespace).map(keyword).collect()
 }
 
 /// What went wrong with the argument `name`, with the words of an error.

@@ -51,6 +51,9 @@ def test_a_noisy_record_is_undecided_until_its_noise_is_declared(exact):
     noise = np.random.default_rng(1).normal(0, 1e-3, exact.omega.shape)
     undecided = polhode.audit(T, exact.attitude, exact.omega + noise, moments=[1, 2, 3])
     assert undecided.verdict == "undecided"
+    # by the keyword, and not by the flag of the command
+    said = " ".join(repr(undecided).split())
+    assert "say so: noise " in said and "--" not in said
     assert polhode.audit(T, exact.attitude, exact.omega + noise, moments=[1, 2, 3], noise=[0, 1.1e-3]).is_right
     # what is said of columns or moments that are not there
     with pytest.raises(PolhodeError, match="has no angular velocity"):
