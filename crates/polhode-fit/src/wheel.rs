@@ -77,15 +77,19 @@ impl fmt::Display for WheelWarning {
         match self {
             Self::TorqueNoise { density } => write!(
                 f,
-                "{unexplained}; torques at random take the place of what is left, with an angular acceleration of a density of up to \
+                "{unexplained}; torque noise is fitted in place of the rest, with an angular acceleration of a power spectral density of up to \
                  {density:.1e} (rad/s^2)^2 s"
             ),
             Self::Residuals { misfit } => {
-                write!(f, "{unexplained}; the residuals have {misfit:.2} times the mean square of the noise")
+                write!(
+                    f,
+                    "{unexplained}; the mean square of the residuals is {misfit:.2} times that of the noise"
+                )
             }
             Self::NoWheel { value, sigma } => write!(
                 f,
-                "no wheel shows about this axis: its moment is {value:.2e} +- {sigma:.1e} kg m^2; check the axis and the speed of the wheel"
+                "the record shows no wheel about this axis: its moment of inertia is {value:.2e} +- {sigma:.1e} kg m^2; check the axis and the \
+                 speed of the wheel"
             ),
         }
     }
@@ -187,8 +191,11 @@ mod tests {
     fn warnings_of_a_calibration_say_their_numbers() {
         for (warning, parts) in [
             (WheelWarning::TorqueNoise { density: 2.5e-3 }, ["check the body, its axes", "up to 2.5e-3"]),
-            (WheelWarning::Residuals { misfit: 1.75 }, ["check the body, its axes", "1.75 times the mean"]),
-            (WheelWarning::NoWheel { value: 1.5e-3, sigma: 0.5 }, ["no wheel shows", "1.50e-3 +- 5.0e-1"]),
+            (
+                WheelWarning::Residuals { misfit: 1.75 },
+                ["check the body, its axes", "1.75 times that of the noise"],
+            ),
+            (WheelWarning::NoWheel { value: 1.5e-3, sigma: 0.5 }, ["shows no wheel", "1.50e-3 +- 5.0e-1"]),
         ] {
             let text = warning.to_string();
             assert!(parts.iter().all(|part| text.contains(part)), "{text}");

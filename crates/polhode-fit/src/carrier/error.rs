@@ -28,8 +28,8 @@ pub enum CarrierError {
     },
     /// Two records are one.
     #[error(
-        "the record of {attached} has rates of that of {before}: with another body on it the carrier tumbles in another way; give each its \
-         own record"
+        "the record of {attached} has samples of that of {before}, although the carrier tumbles differently with another body on it; give \
+         each its own record"
     )]
     Same {
         /// What is said to have tumbled.
@@ -39,8 +39,8 @@ pub enum CarrierError {
     },
     /// The body turns by so much between samples that a record has no weak equations.
     #[error(
-        "the samples of the record of {attached} are too far apart for a joint fit: record so fast that the body turns by less than a tenth of a turn \
-         from one to the next"
+        "the samples of the record of {attached} are too far apart for a joint fit: record so fast that the body makes less than a tenth of a \
+         turn from one sample to the next"
     )]
     Sparse {
         /// What tumbled.
@@ -57,7 +57,9 @@ pub enum CarrierError {
         rule: &'static str,
     },
     /// Something is known of the tensors that a joint fit does not take.
-    #[error("a joint fit takes no {name}: its sizes come from the proof body, from wheels or from torques")]
+    #[error(
+        "a joint fit takes no {name}: the size comes from the proof body, from wheels or from torques; leave it out"
+    )]
     Beforehand {
         /// What.
         name: &'static str,
@@ -69,7 +71,7 @@ pub enum CarrierError {
     #[error(
         "nothing gives the size of the carrier{}: give a record with a proof body, known wheel momenta or known torques",
         told.map_or(String::new(), |(value, sigma)| format!(
-            ": wheels and torques tell one over its trace to {value:.2e} +- {sigma:.2e} 1/(kg m^2), too little"
+            ": 1/trace by wheels and torques is {value:.2e} +- {sigma:.2e} 1/(kg m^2), too uncertain"
         ))
     )]
     NoSize {
@@ -78,10 +80,9 @@ pub enum CarrierError {
     },
     /// The proof body changes the motion by no more than the deviation of the records.
     #[error(
-        "the proof body is too light: it adds a trace of {trace:.3e} kg m^2, and one over that of carrier and proof body is \
-         {inverse:.2e} +- {sigma:.2e} 1/(kg m^2) by the two shapes, {:.1} standard deviations where {needed} are needed; this one \
-         tells carriers with a trace below {bound:.3e} kg m^2 with it; take one at least {:.1} times as heavy, or of another shape, \
-         or record longer", inverse / sigma, needed / (inverse / sigma).max(1.0)
+        "the proof body is too light. It adds a trace of {trace:.3e} kg m^2; from the two shapes, 1/trace of carrier and proof body is \
+         {inverse:.2e} +- {sigma:.2e} 1/(kg m^2), which is {:.1} standard deviations where {needed} are needed. It is heavy enough for a \
+         trace of both below {bound:.3e} kg m^2. Take one at least {:.1} times as heavy, or of another shape, or record longer", inverse / sigma, needed / (inverse / sigma).max(1.0)
     )]
     TooLight {
         /// Trace of what it adds, kg m².
@@ -97,9 +98,9 @@ pub enum CarrierError {
     },
     /// The proof body changes the shape the other way.
     #[error(
-        "the two shapes differ the other way than the proof body changes them: one over the trace of carrier and proof body would be \
+        "the shape changes in the direction opposite to what the proof body adds: 1/trace of carrier and proof body would be \
          {inverse:.2e} +- {sigma:.2e} 1/(kg m^2); check which record is which, that the axes are right-handed, and the axes, the signs of \
-         the products and the place of the proof body"
+         the products of inertia and the position of the proof body"
     )]
     Opposite {
         /// One over the trace of carrier and proof body, 1/(kg m²).
@@ -109,10 +110,10 @@ pub enum CarrierError {
     },
     /// The size of the object is not told.
     #[error(
-        "the record of the object tells five of the six numbers of its tensor, and nothing its size: record carrier, object and proof \
-         body together, or let a wheel turn{}",
+        "the record of the object determines five of the six numbers of its tensor, and nothing determines the size: record carrier, object \
+         and proof body together, or let a wheel turn{}",
         moved.map_or(String::new(), |(value, sigma)| format!(
-            "; with the proof body one over the trace is {value:.2e} +- {sigma:.2e} 1/(kg m^2)"
+            "; with the proof body 1/trace is {value:.2e} +- {sigma:.2e} 1/(kg m^2)"
         ))
     )]
     ObjectSize {
@@ -121,8 +122,8 @@ pub enum CarrierError {
     },
     /// Records of which only some have a wheel.
     #[error(
-        "the record of {with} has wheel momenta and that of {without} has none: all must be of the same wheel; give zeros where it \
-         stands still"
+        "the record of {with} has wheel momenta and that of {without} has none: all records must have the same wheel; give zeros where \
+         it is at rest"
     )]
     Wheels {
         /// The first that has.
@@ -132,8 +133,8 @@ pub enum CarrierError {
     },
     /// The axis of the wheel whose inertia is to be found differs between records.
     #[error(
-        "the wheel of the record of {attached} has an axis {angle:.2e} rad from that of the first record: its one unknown moment of \
-         inertia is about one axis"
+        "the axis of the wheel in the record of {attached} differs by {angle:.2e} rad from that in the first record: its moment of inertia \
+         is found about one axis; give the same axis in all records"
     )]
     WheelAxis {
         /// What tumbled.
@@ -143,7 +144,7 @@ pub enum CarrierError {
     },
     /// The moment of the wheel that is to be found would be negative.
     #[error(
-        "the moment of the wheel would be {inertia:.3e} +- {sigma:.1e} kg m^2, {:.1} standard deviations below zero: reverse the axis \
+        "the moment of inertia of the wheel would be {inertia:.3e} +- {sigma:.1e} kg m^2, {:.1} standard deviations below zero: reverse the axis \
          of the wheel, or the sign of its speed",
         -*inertia / *sigma
     )]
@@ -155,9 +156,9 @@ pub enum CarrierError {
     },
     /// With the deviations that the contradiction asks for, the size of the carrier is open.
     #[error(
-        "the records contradict each other so much that they leave the size open: chi squared is {chi2:.1} of {dof} degrees of freedom, \
-         and with deviations enlarged by {:.1} the trace of the carrier would be {trace:.2e} +- {sigma:.2e} kg m^2; check that the \
-         sensor sits as before, which record is which, and the axes, place and masses of the proof body",
+        "the records contradict each other so much that they do not determine the size: chi squared is {chi2:.1} of {dof} degrees of freedom; \
+         with standard deviations enlarged by a factor of {:.1} the trace of the carrier would be {trace:.2e} +- {sigma:.2e} kg m^2. Check \
+         that the sensor was not moved, which record is which, and the axes, position and masses of the proof body",
         (chi2 / *dof as f64).sqrt()
     )]
     Contradicted {
@@ -172,8 +173,8 @@ pub enum CarrierError {
     },
     /// Gauss's and Newton's method did not come to rest.
     #[error(
-        "the joint fit did not come to rest in {rounds} rounds: the last would move the answer by {moved:.1e} standard deviations; the \
-         records may contradict each other: check axes, places and masses"
+        "the joint fit did not converge in {rounds} rounds: a further one would move the answer by {moved:.1e} standard deviations; the \
+         records may contradict each other: check axes, positions and masses"
     )]
     Unsettled {
         /// Rounds that were made.
@@ -182,7 +183,7 @@ pub enum CarrierError {
         moved: f64,
     },
     /// The equations have no solution.
-    #[error("the joint fit has no certified answer: {0}")]
+    #[error("the joint fit failed: {0}")]
     Solver(#[from] SolverFailure),
 }
 
@@ -204,10 +205,10 @@ mod tests {
         says(light(0.125), &["0.5 standard deviations", "at least 5.0 times"]);
         says(CarrierError::WheelSense { inertia: -1.5, sigma }, &["-1.500e0 +-", "6.0 standard"]);
         let contradicted = CarrierError::Contradicted { chi2: 900.0, dof: 4, trace, sigma };
-        says(contradicted, &["900.0 of 4", "enlarged by 15.0", "5.00e-1 +- 2.50e-1"]);
+        says(contradicted, &["900.0 of 4", "enlarged by a factor of 15.0", "5.00e-1 +- 2.50e-1"]);
         says(CarrierError::NoSize { told: Some((trace, sigma)) }, &["5.00e-1 +- 2.50e-1 1/(kg m^2), too"]);
-        assert!(!CarrierError::NoSize { told: None }.to_string().contains("too little"));
-        says(CarrierError::ObjectSize { moved: Some((trace, sigma)) }, &["with the proof body one over"]);
+        assert!(!CarrierError::NoSize { told: None }.to_string().contains("too uncertain"));
+        says(CarrierError::ObjectSize { moved: Some((trace, sigma)) }, &["with the proof body 1/trace"]);
         assert!(!CarrierError::ObjectSize { moved: None }.to_string().contains("with the proof body"));
         says(CarrierError::Unsettled { rounds: 60, moved: 0.5 }, &["60 rounds", "5.0e-1 standard"]);
     }

@@ -87,7 +87,7 @@ impl ProofBody {
     pub(super) fn deviations(&self) -> Result<Option<[f64; 6]>, CarrierError> {
         let Some(share) = self.deviation else { return Ok(None) };
         if !(share > 0.0 && (share * share).is_normal()) {
-            let rule = "give a positive number, or none where the body is exact";
+            let rule = "give a positive number, or leave it out if the body is exact";
             return Err(CarrierError::Setting {
                 name: "the deviation of the proof body",
                 value: share,
@@ -112,7 +112,7 @@ pub(super) fn parallel_axis(
         }
     }
     if let Some(value) = place.iter().copied().find(|value| !value.is_finite()) {
-        let (name, rule) = ("the place of the attached body", "give finite numbers, m");
+        let (name, rule) = ("the position of the attached body", "give finite numbers, m");
         return Err(CarrierError::Setting { name, value, rule });
     }
     // no product of the masses, so that neither over- nor underflows

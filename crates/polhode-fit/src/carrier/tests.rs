@@ -342,7 +342,7 @@ fn what_no_attached_body_has_is_refused_by_name() {
         assert_eq!(refused(bad, Vector3::x(), 1.0), "the mass of the attached body");
         assert_eq!(refused(1.0, Vector3::x(), bad), "the mass of the carrier");
     }
-    assert_eq!(refused(1.0, Vector3::new(0.0, f64::NAN, 0.0), 1.0), "the place of the attached body");
+    assert_eq!(refused(1.0, Vector3::new(0.0, f64::NAN, 0.0), 1.0), "the position of the attached body");
     // two equal masses two apart: each is one from the centre
     let found = parallel_axis(1.0, Vector3::x() * 2.0, 1.0).unwrap();
     assert_eq!(found, Matrix3::from_diagonal(&Vector3::new(0.0, 2.0, 2.0)));

@@ -39,18 +39,18 @@ impl fmt::Display for CarrierWarning {
         match self {
             Self::Contradiction { chi2, dof } => write!(
                 f,
-                "the records contradict each other: chi squared is {chi2:.1} of {dof} degrees of freedom; check that the sensor sits \
-                 as before, and the axes, place and masses of the proof body; all deviations are enlarged by {:.1}",
+                "the records contradict each other: chi squared is {chi2:.1} of {dof} degrees of freedom; all standard deviations are enlarged \
+                 by a factor of {:.1}. Check that the sensor was not moved, and the axes, position and masses of the proof body",
                 (chi2 / *dof as f64).sqrt()
             ),
             Self::LightObject { trace, sigma } => write!(
                 f,
-                "the object is small beside its deviation: its trace is {trace:.2e} +- {sigma:.2e} kg m^2; take a lighter carrier, \
-                 or record longer"
+                "the tensor of the object is hardly larger than its standard deviation: its trace is {trace:.2e} +- {sigma:.2e} kg m^2; take a \
+                 lighter carrier, or record longer"
             ),
             Self::Held { name, pull } => write!(
                 f,
-                "the law I1 + I2 >= I3 holds the tensor of the {name}: without it the answer lies {pull:.1} standard deviations away"
+                "the law I1 + I2 >= I3 limits the tensor of the {name}: without it the answer lies {pull:.1} standard deviations away"
             ),
         }
     }
@@ -108,7 +108,7 @@ mod tests {
             assert!(parts.iter().all(|part| text.contains(part)), "{text}: {parts:?}");
         };
         // the root of 900/4
-        says(told.unwrap(), &["900.0 of 4 degrees", "enlarged by 15.0"]);
+        says(told.unwrap(), &["900.0 of 4 degrees", "enlarged by a factor of 15.0"]);
         says(CarrierWarning::LightObject { trace: 6.0, sigma: 1.25 }, &["6.00e0 +- 1.25e0 kg m^2"]);
         says(CarrierWarning::Held { name: "object", pull: 2.5 }, &["of the object", "lies 2.5 standard"]);
         assert_eq!(contradiction(Agreement { chi2: 4.0, dof: 4 }), None);
