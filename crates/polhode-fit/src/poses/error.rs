@@ -31,7 +31,7 @@ pub enum PosesError {
     },
     /// A quaternion that is no rotation; one that was normalised at norm zero is not finite.
     #[error(
-        "{source_name}, sample {sample}: a quaternion of norm zero, or one that is not finite, is no attitude; leave the sample out"
+        "{source_name}, sample {sample}: the quaternion has norm zero or is not finite, so that it is not an attitude; leave the sample out"
     )]
     NoAttitude {
         /// Where it comes from.
@@ -41,7 +41,7 @@ pub enum PosesError {
     },
     /// Times that do not ascend.
     #[error(
-        "{source_name}, sample {sample}: time {} s comes after {} s; times must ascend. Sort the samples, or give the files apart",
+        "{source_name}, sample {sample}: time {} s comes after {} s; times must ascend. Sort the samples, or give them as separate files",
         Shown(*time),
         Shown(*before)
     )]

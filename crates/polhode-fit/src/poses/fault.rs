@@ -15,8 +15,8 @@ pub enum PoseFault {
     /// Nearly half a turn, or more, from one attitude to the next.
     #[error(
         "from sample {} of {source_name}, at {} s, to the next that is used, {step:.3e} s later, the attitude turns by {turn:.3} rad, or the \
-         other way round by {:.3} rad: beyond pi = 3.14 no motion can be told from its samples, and these would be rates of {:.3e} and {:.3e} rad/s; record {:.3e} attitudes a \
-         second or more, which tells the two apart, or leave out the sample if it is a bad one",
+         other way round by {:.3} rad; the rate would be {:.3e} or {:.3e} rad/s. To distinguish the two, record {:.3e} attitudes a second or \
+         more; or leave the sample out if it is wrong",
         sample, Shown(*time), TAU - turn, turn / step, (TAU - turn) / step, (TAU - turn) / step / HALF_TURN
     )]
     HalfTurn {
@@ -33,7 +33,8 @@ pub enum PoseFault {
     },
     /// The body does not turn.
     #[error(
-        "the attitudes change by {turn:.2e} rad in all, and their noise is {noise:.2e} rad: the body does not turn; let it turn by more than {:.2e} rad", STILL * *noise
+        "the attitudes change by {turn:.2e} rad in all, and their noise is {noise:.2e} rad: the body hardly turns; let it turn by more than \
+         {:.2e} rad", STILL * *noise
     )]
     NoTurn {
         /// Root mean square of the turn of an attitude from the first, rad.
@@ -43,8 +44,8 @@ pub enum PoseFault {
     },
     /// The body turns so far from one attitude to the next that its motion looks like noise.
     #[error(
-        "from one attitude to the next the body turns by up to {turn:.2} rad, and by {all:.2} rad in all: attitudes so far apart tell neither \
-         its motion nor their noise; record them faster, or state their noise"
+        "from one attitude to the next the body turns by up to {turn:.2} rad, and by {all:.2} rad in all: attitudes so far apart show neither \
+         its motion nor their noise; record faster, or state their noise"
     )]
     FarApart {
         /// Largest turn from one attitude to the next, rad.
@@ -54,8 +55,8 @@ pub enum PoseFault {
     },
     /// The attitudes would differ by their noise alone as it is stated, and not as neighbours show it.
     #[error(
-        "the noise of the attitudes is stated as {stated:.2e} rad, and neighbouring ones show {shown:.2e} rad; their turn is too small for \
-         the stated one: {}",
+        "the stated noise of the attitudes is {stated:.2e} rad, and neighbouring attitudes show {shown:.2e} rad; the body turns too little for \
+         the stated noise: {}",
         UNSTATED
     )]
     StatedNoise {
@@ -66,9 +67,10 @@ pub enum PoseFault {
     },
     /// No motion of any body follows the attitudes, under no torque that a fit has a model of.
     #[error(
-        "no free motion follows the attitudes, nor one under drag, a constant torque or small torques at random: the nearest one misses them by {residual:.2e} rad (root mean square of a component){}; torques \
-         act, or a frame or a sequence of angles is read wrongly, or the body turns by more than half a turn between samples ({turn:.2} rad \
-         as read); throw the body, cut out of the record what is free, or record faster",
+        "no free motion follows the attitudes, nor one with drag, a constant torque or small torque noise: the nearest one leaves residuals of \
+         {residual:.2e} rad (root mean square of a component){}. Torques act, or a frame or a sequence of angles is read wrongly, or the body \
+         makes more than half a turn between samples ({turn:.2} rad as read); throw the body, fit only the part of the record in which it is \
+         free, or record faster",
         noise.map_or(String::new(), |noise| format!(", where their noise is {noise:.2e} rad"))
     )]
     NotFree {
@@ -82,14 +84,14 @@ pub enum PoseFault {
     /// The likelihood tells no tensor: the search for its maximum did not end, or ended so far from all bodies that their likelihood is
     /// not foreseen.
     #[error(
-        "bodies of very different moments follow the samples nearly as well, as near a steady spin, and the likeliest of them is not found; \
-         throw the body with a larger wobble, or record longer"
+        "bodies with very different moments follow the samples nearly as well, as near a steady spin, and the search for the likeliest of them \
+         did not converge; throw the body with a larger wobble, or record longer"
     )]
     Unsettled,
     /// Both directions explain the attitudes.
     #[error(
-        "the motion does not tell whether the attitudes are body to space or space to body, as that of an axisymmetric body: read body to \
-         space I1 : I2 : I3 = {}, read space to body {} (log-likelihood {} by {gain:.1}); name the direction",
+        "the motion does not show whether the attitudes are body to space or space to body: with body to space I1 : I2 : I3 = {}, with space \
+         to body {} (log-likelihood {} by {gain:.1}). The body may be axisymmetric; state the direction",
         three(as_read), three(inverse), if *gain >= 0.0 { "of the first higher" } else { "of the second higher" }, gain = gain.abs()
     )]
     Direction {
@@ -102,8 +104,8 @@ pub enum PoseFault {
     },
     /// The inverse direction explains the attitudes, and that in which they were read does not.
     #[error(
-        "the attitudes look inverted: their inverses are those of a free body with I1 : I2 : I3 = {} (log-likelihood higher by {gain:.0}), and \
-         as they were read they are those of none; read them the other way round",
+        "the attitudes look inverted: their inverses are those of a free body with I1 : I2 : I3 = {} (log-likelihood higher by {gain:.0}), while \
+         no free body has them as they were read; state the other direction",
         three(inverse)
     )]
     Inverted {
@@ -114,13 +116,13 @@ pub enum PoseFault {
     },
     /// The rates beside the attitudes are their mirror image.
     #[error(
-        "the rates turn the other way than the attitudes: a mirrored axis of the one or of the other, or attitudes that are read the wrong \
-         way round, would explain it"
+        "the rates turn in the direction opposite to that of the attitudes: check for a mirrored axis of either, and for attitudes in the wrong \
+         direction (body to space or space to body)"
     )]
     Mirrored,
     /// The rates beside the attitudes have another size.
     #[error(
-        "the rates are {scale:.4} times those of the attitudes: the units of rates, times or angles are probably mistaken"
+        "the rates are {scale:.4} times those of the attitudes: the units of rates, times or angles are probably mistaken; check them"
     )]
     Scale {
         /// Root mean square of the rates over that of the attitudes.
@@ -128,14 +130,12 @@ pub enum PoseFault {
     },
     /// A torque that a fit of attitudes with rates beside them has no model of.
     #[error(
-        "where rates stand beside attitudes a fit reckons with drag in proportion to the momentum and with a small constant torque, and with no \
-         other; ask for one of these, or fit the attitudes or the rates alone"
+        "a fit of rates and attitudes includes drag in proportion to the momentum or a small constant torque, and no other torque; ask for one \
+         of these, or fit the attitudes or the rates alone"
     )]
     Torque,
     /// A setting that only a fit of rates has.
-    #[error(
-        "{name} has no meaning where attitudes are fitted by the exact motion; leave it out, or fit the rates alone"
-    )]
+    #[error("{name} has no meaning for a fit of attitudes; leave it out, or fit the rates alone")]
     OnlyRates {
         /// Which one.
         name: &'static str,
@@ -170,7 +170,7 @@ mod tests {
                 "sample 7 of a.csv, at 12.25 s, to",
                 "5.000e-1 s later",
                 "3.283 rad",
-                "6.000e0 and 6.566e0",
+                "6.000e0 or 6.566e0",
                 "2.320e0 attitudes",
             ],
         );
