@@ -40,7 +40,7 @@ pub struct ToldComponent {
 
 /// What helps against a noise that is stated and is not that of the readings.
 pub(crate) const UNSTATED: &str =
-    "check its value and its unit, or leave it out, so that it is read from the samples";
+    "check its value and its unit, or leave it out: the samples then give the noise";
 
 impl From<FitError> for polhode::Error {
     fn from(error: FitError) -> Self {
@@ -54,8 +54,8 @@ impl From<FitError> for polhode::Error {
 pub enum FitError {
     /// Too few samples for even one test function.
     #[error(
-        "{samples} samples, at most {longest} without a gap (segments: {segments}, left out for flat tops: {saturated}); \
-         a fit needs a segment of at least {needed} samples: record longer or faster{}",
+        "{samples} samples, at most {longest} without a gap (segments: {segments}, left out as saturated: \
+         {saturated}); a fit needs a segment of at least {needed} samples: record longer or faster{}",
         if *saturated > 0 { ", with a sensor of a larger range" } else { "" }
     )]
     TooFewSamples {
@@ -72,8 +72,8 @@ pub enum FitError {
     },
     /// The angular velocity is zero, or a quarter and more of its mean square is noise.
     #[error(
-        "the rates have a root mean square of {rms:.3e} rad/s and a noise of {noise:.3e} rad/s: the rotation is too \
-         slow for this noise; spin the body{}", faster(*noise)
+        "the rotation is too slow for the noise: the rates have a root mean square of {rms:.3e} rad/s, their noise is \
+         {noise:.3e} rad/s; spin the body{}", faster(*noise)
     )]
     NoRotation {
         /// Root mean square rate, rad/s.
@@ -83,8 +83,8 @@ pub enum FitError {
     },
     /// A quarter and more of the mean square rate would be noise as it is stated, and not as the readings show it.
     #[error(
-        "the noise is stated as {stated:.2e} rad/s, {} times the {shown:.2e} rad/s that neighbouring readings show; the rates, with a root \
-         mean square of {rms:.3e} rad/s, are too small for the stated one: {}",
+        "the stated noise of {stated:.2e} rad/s is {} times the {shown:.2e} rad/s that neighbouring readings show, and too large \
+         for rates of a root mean square of {rms:.3e} rad/s: {}",
         two_digits(*stated / *shown), UNSTATED
     )]
     StatedNoise {
@@ -100,9 +100,9 @@ pub enum FitError {
     Unidentifiable(Box<Identifiability>),
     /// The iteration did not converge at any radius of the test functions, although the rates change.
     #[error(
-        "the rates change, but the iteration did not converge in {rounds} rounds at any radius of the test functions: the \
-         noise of {noise:.3e} rad/s may hide the motion, torques may act, or the body may be slender; record longer, \
-         with a larger wobble{}{}{}{}",
+        "the rates change, but the iteration did not converge ({rounds} rounds at each half width of the test functions). The noise \
+         of {noise:.3e} rad/s may hide the motion, torques may act, or the body may be slender: record longer, with a larger \
+         wobble{}{}{}{}",
         slowed(*fall), smaller(*factor), known(axes), left_handed(mirror.as_deref())
     )]
     Unsettled {
@@ -121,8 +121,8 @@ pub enum FitError {
     },
     /// An axis reads one number all the time, and the others read noise.
     #[error(
-        "the rate about {axis} is {} rad/s in all {samples} samples of {place}, where the others have a noise of {noise:.2e} rad/s: that axis \
-         is at the end of its range throughout, or reads nothing; record with a larger range, or see to its column",
+        "the rate about {axis} is {} rad/s in all {samples} samples of {place}, while the other axes have a noise of {noise:.2e} rad/s: \
+         this axis is saturated, or is not read; use a larger range, or check its column",
         Shown(*value)
     )]
     HeldAxis {
@@ -139,8 +139,8 @@ pub enum FitError {
     },
     /// Two axes read the same numbers, down to their noise, or one reads the negative of the other.
     #[error(
-        "the rates about {} and {} are of one size in all {samples} samples of {place}, down to their noise of {noise:.2e} rad/s: one \
-         column stands for both; name the columns of three axes",
+        "the rates about {} and {} agree up to their sign in all {samples} samples of {place}, their noise of {noise:.2e} rad/s \
+         included: one column was read for both axes; name the columns of all three axes",
         axes[0], axes[1]
     )]
     SameAxes {
@@ -155,15 +155,15 @@ pub enum FitError {
     },
     /// Errors of the sensor that were to be fitted leave the tensor open, which the record tells without them.
     #[error(
-        "the record cannot tell the errors of the sensor that are to be fitted from the tensor: without them the fit has an answer; \
-         let them have smaller deviations, fit fewer of them or none, or record longer or faster"
+        "the record cannot separate the errors of the sensor that are to be fitted from the tensor; without them the fit has an answer. \
+         Give them smaller standard deviations, fit fewer of them or none, or record longer or faster"
     )]
     UntoldSensor,
     /// Momenta of wheels or torques of the record contradict its rates.
     #[error(
-        "the momenta of wheels and the torques of the record contradict its rates: the best body with them leaves {} of the \
-         squared derivative of the rates unexplained; look at their axes, signs and units. A record with the wheels at rest and without these \
-         torques tells whether something else drives the body",
+        "the wheel momenta and torques of the record contradict its rates: with them the best tensor leaves {} of the squared angular \
+         acceleration unexplained. Check their axes, signs and units. A record with the wheels at rest and without these torques shows \
+         whether something else drives the body",
         per_cent(*unexplained)
     )]
     Contradicted {
@@ -172,8 +172,8 @@ pub enum FitError {
     },
     /// Components of the momentum of wheels stand in another order, or have other signs, than the rates tell.
     #[error(
-        "the momentum of the wheels contradicts the rates: it explains them where ({}) takes the place of (hx, hy, hz); look at the order, \
-         the signs and the axes of its components",
+        "the momentum of the wheels contradicts the rates, but ({}) in place of (hx, hy, hz) would explain them: check the order, the \
+         signs and the axes of its components",
         components(*order, *signs)
     )]
     Exchanged {
@@ -184,22 +184,22 @@ pub enum FitError {
     },
     /// One component of the momentum of wheels is larger or smaller than what the record says.
     #[error(
-        "the momentum of the wheels contradicts the rates: it explains them where {}; look at the inertia, the axis and the speed of each wheel",
+        "the momentum of the wheels contradicts the rates, but would explain them if {}: check the inertia, the axis and the speed of each wheel",
         so_many_times(.0)
     )]
     Told(Vec<ToldComponent>),
     /// The momenta of wheels and the torques of the record are zero throughout, and a wheel explains it, or the fit of a body without any is
     /// refused, and why.
     #[error(
-        "the wheel momenta and torques of the record are zero in all its samples: they tell no size, and a body without wheels does not \
-         move like this; give the momenta that the wheels have, or leave the columns out if there are none{}",
-        .0.as_ref().map_or(String::new(), |error| format!(". As of a body without wheels: {error}"))
+        "the wheel momenta and torques of the record are zero in all samples, so that they do not give the size, and a body without wheels \
+         does not move like this. Give the momenta of the wheels, or leave the columns out if there are no wheels{}",
+        .0.as_ref().map_or(String::new(), |error| format!(". Without wheels: {error}"))
     )]
     ZeroInputs(Option<Box<FitError>>),
     /// Torques drive the body: its motion is not that of a free one.
     #[error(
-        "the body is driven, and no tensor can be told: {}; throw the body, cut out of the record what is free, or \
-         make sure of its units",
+        "torques drive the body, so that the record does not determine its tensor: {}; throw the body, fit only the part of the record \
+         in which it is free, or check the units",
         driven(*unexplained, *growth, *pull)
     )]
     Driven {
@@ -215,8 +215,8 @@ pub enum FitError {
     Poses(#[from] PoseFault),
     /// Nowhere in the record does the body rotate freely.
     #[error(
-        "the body rotates freely nowhere in the record: torques beyond 0.3 tr(J) |w|^2 act in {:.0} per cent of the time in \
-         which it turns, and {}; throw the body, or fit a window of your own choice",
+        "the body rotates freely nowhere in the record: torques above 0.3 tr(J) |w|^2 act in {:.0} per cent of the time in \
+         which it turns, and {}; throw the body, or choose the window yourself",
         100.0 * share, nearest(*torque, *most)
     )]
     NoFlight {
@@ -229,8 +229,8 @@ pub enum FitError {
     },
     /// Other units of the rates or times explain the record, and those in which it was read do not.
     #[error(
-        "the units look mistaken: {}? A free body then leaves {} of the squared derivative of the rates unexplained, and {} \
-         as read; the motion tells the product of rate and time alone. Name the units, or switch this check off. To find them, turn the sensor \
+        "the units look mistaken: {}? Free motion would then leave {} of the squared angular acceleration unexplained; as read it leaves {}. \
+         The motion depends only on the product of rate and time. Name the units, or switch this check off. To find them, turn the sensor \
          once about one axis: the sum of rate times time step is 6.28 in rad/s and s, 360 in deg/s and s",
         alternatives(products), per_cent(*better), per_cent(*unexplained)
     )]
@@ -244,8 +244,8 @@ pub enum FitError {
     },
     /// The body turns by more than half a turn from sample to sample.
     #[error(
-        "from one sample to the next the body turns by {turn:.3e} rad, with a time step of {step:.3e} s: beyond pi = 3.14 no \
-         motion can be told from its samples; the units of rates or times are probably mistaken, else record more than {:.3e} samples a second",
+        "from one sample to the next, a time step of {step:.3e} s, the body turns by {turn:.3e} rad: beyond pi = 3.14 rad samples do not \
+         determine a motion; the units of rates or times are probably mistaken, else record more than {:.3e} samples a second",
         *turn / (core::f64::consts::PI * *step)
     )]
     Undersampled {
@@ -258,13 +258,13 @@ pub enum FitError {
     #[error("{} and {} exclude each other: each would have to be relaxed by {:.3e} of the trace", demand(&.0.first), demand(&.0.second), .0.gap)]
     Contradiction(Box<Clash>),
     /// Limits that leave less than a millionth of the trace between them.
-    #[error("{} and {} leave no room between them; widen each by a millionth of the trace at least", demand(&.0.first), demand(&.0.second))]
+    #[error("{} and {} leave no room between them; widen each by at least a millionth of the trace", demand(&.0.first), demand(&.0.second))]
     NoRoom(Box<Clash>),
     /// Coefficients of a torque that the record cannot tell.
     #[error(
-        "the record cannot tell {}{}: ask for a simpler torque, or record longer, with a larger wobble, or several throws \
+        "the record does not determine {}{}: ask for a simpler torque, or record longer, with a larger wobble, or several throws \
          about different axes", names.join(", "),
-        if *rank < 5 { format!(" from the tensor, of which it determines {rank} of 5 numbers with them, and 5 without") }
+        if *rank < 5 { format!(" together with the tensor, of which it determines {rank} of 5 numbers with them, and all 5 without") }
         else { String::new() }
     )]
     Untold {
@@ -275,7 +275,7 @@ pub enum FitError {
     },
     /// A momentum or an energy is to give the size, and what was fitted changes it, or the readings that tell its mean.
     #[error(
-        "{quantity} is to give the size of the tensor, as one that is constant and read without errors of the sensor, but {} fitted too: \
+        "{quantity} gives the size of the tensor only if it is constant and read without errors of the sensor, but {} fitted too: \
          give the trace or the moment about an axis instead, or leave it out for the shape alone",
         were(names)
     )]
@@ -287,9 +287,9 @@ pub enum FitError {
     },
     /// A momentum or an energy is to give the size, and differs between the segments.
     #[error(
-        "{quantity} is to give the size of the tensor, as one that is the same in all segments, but that of segment {} is {factor:.3} times \
-         that of segment {}: fit only the segment that it belongs to, give the trace or the moment about an axis instead, or leave it out for \
-         the shape alone",
+        "{quantity} gives the size of the tensor only if it is the same in all segments, but that of segment {} is {factor:.3} times \
+         that of segment {}: fit only the segment to which it belongs, give the trace or the moment about an axis instead, or leave it \
+         out for the shape alone",
         largest + 1, smallest + 1
     )]
     SizeDiffers {
@@ -304,15 +304,17 @@ pub enum FitError {
     },
     /// A wheel is to be calibrated from a record that does not tell its speed.
     #[error(
-        "no wheel turns in the record: record again with the wheel running; each segment must hold its speed, somewhere not zero"
+        "no wheel turns in the record: record again with the wheel turning; each segment needs its speed, which must not be zero throughout"
     )]
     NoWheelSpeed,
     /// A wheel is to be calibrated from a record that has torques.
-    #[error("the record has torques: calibrate a wheel from records in which none acts but that of air")]
+    #[error(
+        "the record has torques: calibrate a wheel from records in which no torque but that of the air acts"
+    )]
     WheelWithTorques,
     /// The moment of a wheel that is to be found would be negative.
     #[error(
-        "the moment of the wheel would be {value:.3e} +- {sigma:.1e} kg m^2, {:.1} standard deviations below zero: reverse the axis of \
+        "the moment of inertia of the wheel would be {value:.3e} +- {sigma:.1e} kg m^2, {:.1} standard deviations below zero: reverse the axis of \
          the wheel, or the sign of its speed",
         -*value / *sigma
     )]
@@ -324,8 +326,8 @@ pub enum FitError {
     },
     /// Segments that hold different quantities.
     #[error(
-        "{with} has {what} and {without} has none: give both what their sensors read, zeros where nothing turns or \
-         pushes, or fit them apart"
+        "{with} has {what} and {without} has none: give them for both, as zeros where no wheel turns and no torque acts, or \
+         fit the two separately"
     )]
     Sensors {
         /// The quantity.
@@ -337,8 +339,7 @@ pub enum FitError {
     },
     /// A segment whose rates have a unit beside one whose unit is a guess.
     #[error(
-        "{named} is in {unit} by its header, and {unnamed} names no unit and would be taken for rad/s: name the unit of \
-         both"
+        "{named} is in {unit} by its header, and {unnamed} names no unit and would be read in rad/s: name the unit of both"
     )]
     MixedUnits {
         /// The segment whose unit is named.
@@ -350,8 +351,8 @@ pub enum FitError {
     },
     /// The covariance of a prior tensor is not one.
     #[error(
-        "{}; give one that is symmetric and positive, as standard deviations that are not zero do",
-        if *symmetric { format!("the covariance of the prior tensor is not positive: its smallest eigenvalue is {least:.3e} (kg m^2)^2") }
+        "{}; give a symmetric one without eigenvalues that are zero or negative",
+        if *symmetric { format!("the covariance of the prior tensor is not positive definite: its smallest eigenvalue is {least:.3e} (kg m^2)^2") }
         else { "the covariance of the prior tensor is not symmetric".into() }
     )]
     PriorCovariance {
@@ -363,7 +364,7 @@ pub enum FitError {
     /// The prior tensor and a limit, or the physical law, exclude each other.
     #[error(
         "the prior tensor and {} exclude each other: it lies {pull:.1} of its standard deviations outside; check the \
-         signs of its products, widen its deviations, or leave one of the two out",
+         signs of its products of inertia, give it larger standard deviations, or leave one of the two out",
         demand(constraint)
     )]
     PriorOutside {
@@ -375,8 +376,8 @@ pub enum FitError {
     /// The prior tensor and the record exclude each other.
     #[error(
         "the prior tensor and the record exclude each other: (xx, yy, zz, xy, xz, yz) over the trace is {} by the prior \
-         and {} by the record, chi squared {chi2:.1} of {dof} degrees of freedom; check the axes of the prior, the signs \
-         of its products and its unit, widen its deviations, or leave it out{}",
+         and {} by the record, chi squared {chi2:.1} of {dof} degrees of freedom; check the axes of the prior, the signs of its \
+         products of inertia and its unit, give it larger standard deviations, or leave it out{}",
         six(prior),
         six(record),
         left_handed(mirror.as_deref())
@@ -395,8 +396,8 @@ pub enum FitError {
     },
     /// The prior tensor has another size than the known quantity says.
     #[error(
-        "the prior tensor has the trace {prior:.4e} +- {sigma:.1e} kg m^2, and the known quantity gives {known:.4e}: they \
-         exclude each other; correct one of them, or give the prior as a shape"
+        "the prior tensor has the trace {prior:.4e} +- {sigma:.1e} kg m^2, and the known quantity gives {known:.4e} kg m^2: \
+         they exclude each other; correct one of them, or give the prior as a shape"
     )]
     PriorSize {
         /// Trace of the prior, kg m².
@@ -434,14 +435,13 @@ pub enum FitError {
     },
     /// The size of the tensor is given twice.
     #[error(
-        "the record has wheel momenta or torques, which give the size of the tensor, and so does the known quantity; \
-         leave out one of them"
+        "the wheel momenta or torques of the record give the size of the tensor, and so does the known quantity; leave out one of them"
     )]
     TwoScales,
     /// Test functions that no segment has room for.
     #[error(
-        "a radius of {radius} s needs a segment of {:.4} s, which holds two test functions with {needed} samples in each; \
-         the longest lasts {longest} s: set a smaller radius, or record longer", (2.0 + 0.5 / TESTS_PER_RADIUS) * radius
+        "test functions of half width {radius} s need a segment of {:.4} s, with room for two of at least {needed} samples each; the longest \
+         lasts {longest} s: give a smaller half width, or record longer", (2.0 + 0.5 / TESTS_PER_RADIUS) * radius
     )]
     Radius {
         /// The radius, s.
@@ -453,22 +453,22 @@ pub enum FitError {
     },
     /// Test functions so short that their equations are nearly as many as the samples.
     #[error(
-        "a radius of {radius} s gives nearly as many equations as there are samples, so that the covariance of \
-         their noise is singular; set a larger radius"
+        "test functions of half width {radius} s give nearly as many equations as there are samples, so that the covariance of their \
+         noise is singular; give a larger half width"
     )]
     Dense {
         /// The radius, s.
         radius: f64,
     },
     /// The program for the nearest physical tensor has no certified answer.
-    #[error("the program for the nearest physical tensor has no certified answer: {0}")]
+    #[error("the search for the physically valid tensor that fits best failed: {0}")]
     Solver(SolverFailure),
 }
 
 /// The law said in full, where it stands against a limit.
 fn demand(constraint: &Constraint) -> String {
     match constraint {
-        Constraint::Triangle => "the law I1 + I2 >= I3, by which a moment is at most half the trace".into(),
+        Constraint::Triangle => "the law I1 + I2 >= I3 (a moment is at most half the trace)".into(),
         limit => limit.to_string(),
     }
 }
@@ -478,8 +478,8 @@ fn six(entries: &[f64; 6]) -> String {
 }
 
 fn nearest(torque: Option<f64>, most: f64) -> String {
-    torque.filter(|torque| *torque > most).map_or("no stretch of free rotation is long enough for a fit".into(), |torque| {
-        format!("the stretch nearest to a free rotation with drag leaves {torque:.3} tr(J) |w|^2, at most {most} is allowed")
+    torque.filter(|torque| *torque > most).map_or("no part with free rotation is long enough for a fit".into(), |torque| {
+        format!("the part nearest to free rotation with drag has torques of {torque:.3} tr(J) |w|^2, where at most {most} is allowed")
     })
 }
 
@@ -496,7 +496,7 @@ fn so_many_times(told: &[ToldComponent]) -> String {
     let each = told.iter().map(|told| {
         let ToldComponent { axis, factor, sigma } = told;
         format!(
-            "h{} is {} times what the record says",
+            "h{} were {} times what the record has",
             ["x", "y", "z"][(*axis).min(2)],
             with_sigma(*factor, *sigma)
         )
@@ -532,8 +532,8 @@ pub(crate) fn per_cent(share: f64) -> String {
 fn left_handed(moments: Option<&[f64; 3]>) -> String {
     moments.map_or(String::new(), |[a, b, c]| {
         format!(
-            ". A mirrored axis would explain it: with left-handed axes, as with one reversed or two exchanged, the record is \
-             that of I1 : I2 : I3 = {a:.4} : {b:.4} : {c:.4}"
+            ". A mirrored axis would explain it: in left-handed axes (one reversed, or two exchanged) the record is that of a body \
+             with I1 : I2 : I3 = {a:.4} : {b:.4} : {c:.4}"
         )
     })
 }
@@ -542,7 +542,7 @@ fn driven(unexplained: Option<f64>, growth: f64, pull: f64) -> String {
     let mut facts = Vec::new();
     if let Some(share) = unexplained.filter(|share| *share >= 0.01) {
         facts.push(format!(
-            "free motion with drag and a constant torque leaves {} of the squared derivative of the rates unexplained",
+            "free motion with drag and a constant torque leaves {} of the squared angular acceleration unexplained",
             per_cent(share)
         ));
     }
@@ -550,21 +550,21 @@ fn driven(unexplained: Option<f64>, growth: f64, pull: f64) -> String {
         facts.push(format!("|J w| grows by {:.2} per cent per second", 100.0 * growth));
     }
     if pull > 1.0 {
-        facts.push(format!("the physical law moves the tensor by {pull:.1} standard deviations"));
+        facts.push(format!("the physical limits (I1 + I2 >= I3, no negative drag) move the tensor by {pull:.1} standard deviations"));
     }
     facts.join(", ")
 }
 
 fn slowed(fall: Option<f64>) -> String {
     fall.map_or(String::new(), |fall| {
-        format!(". The rates fall by {:.2} per cent per second: let the fit reckon with drag", 100.0 * fall)
+        format!(". The rates fall by {:.2} per cent per second: let the fit include drag", 100.0 * fall)
     })
 }
 
 fn smaller(factor: Option<f64>) -> String {
     factor.map_or(String::new(), |factor| {
         format!(
-            ". Make sure of the units: with rate x time {factor:.4} times as large or larger, a nearly spherical body would move like this"
+            ". Check the units: with rate times time {factor:.4} times as large, or larger, a nearly spherical body would move like this"
         )
     })
 }
@@ -575,7 +575,8 @@ fn faster(noise: f64) -> String {
     if needed > 0.0 { format!(" at {needed:.1e} rad/s or faster") } else { String::new() }
 }
 
-fn capital(words: &str) -> String {
+/// With a capital letter first.
+pub(crate) fn capital(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or(String::new(), |first| first.to_uppercase().chain(letters).collect())
 }

@@ -61,8 +61,8 @@ impl Flights {
             more => format!(", and in {more} more spans,"),
         };
         Some(format!(
-            "from {:.3} s to {:.3} s{more} the readings are those of a free body with another tensor: an axis of the sensor changes its \
-             sign or its place, or it is another body; fit each part by itself",
+            "from {:.3} s to {:.3} s{more} the readings are those of a free body with another tensor: an axis of the sensor was reversed or \
+             exchanged with another, or it is another body; fit each part separately",
             first.start, first.end
         ))
     }

@@ -97,12 +97,12 @@ impl ReadingError {
     pub(crate) fn in_words(self) -> &'static str {
         match self {
             ReadingError::Misalignment => "a misalignment of the axes of the sensor",
-            ReadingError::AxisScales => "relative errors of scale of the axes of the sensor",
+            ReadingError::AxisScales => "scale errors of the axes of the sensor",
             ReadingError::Offsets => "offsets of the sensor",
             ReadingError::Delays => "delays of the axes of the sensor",
-            ReadingError::Wheel(0) => "an error of hx, the momentum of the wheels as the record tells it",
-            ReadingError::Wheel(1) => "an error of hy, the momentum of the wheels as the record tells it",
-            ReadingError::Wheel(_) => "an error of hz, the momentum of the wheels as the record tells it",
+            ReadingError::Wheel(0) => "an error of hx, the momentum of the wheels in the record",
+            ReadingError::Wheel(1) => "an error of hy, the momentum of the wheels in the record",
+            ReadingError::Wheel(_) => "an error of hz, the momentum of the wheels in the record",
         }
     }
 }
@@ -193,7 +193,7 @@ mod tests {
         for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
             let error = ReadingError::Wheel(axis);
             assert_eq!(error.to_string(), format!("wheel-{name}"));
-            let words = format!("an error of h{name}, the momentum of the wheels as the record tells it");
+            let words = format!("an error of h{name}, the momentum of the wheels in the record");
             assert_eq!(error.in_words(), words);
         }
         for (error, name, size, text) in [

@@ -31,7 +31,7 @@ impl fmt::Display for AverageAxis {
         let axis = direction(&self.axis);
         write!(
             f,
-            "{axis} is a principal axis if no torque acted, to within products of inertia of {:.4} of the trace",
+            "{axis} is a principal axis if no torque acted, with products of inertia of at most {:.4} of the trace",
             self.product
         )
     }
@@ -131,7 +131,7 @@ mod tests {
         let axis = AverageAxis { axis: Vector3::new(0.0, 0.6, -0.8), product: 0.0123 };
         assert_eq!(
             axis.to_string(),
-            "(0.0000, -0.6000, 0.8000) is a principal axis if no torque acted, to within products of inertia of 0.0123 of the trace"
+            "(0.0000, -0.6000, 0.8000) is a principal axis if no torque acted, with products of inertia of at most 0.0123 of the trace"
         );
     }
 

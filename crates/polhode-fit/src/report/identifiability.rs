@@ -5,6 +5,7 @@ use core::fmt;
 
 use nalgebra::{Matrix3, Vector3};
 
+use crate::error::capital;
 use crate::physical::coordinates::{Coordinates, Form, eigen, trace_free};
 
 /// A principal axis that a record determines, though not the tensor. Its `Display` is a sentence.
@@ -19,11 +20,12 @@ pub struct PrincipalAxis {
 
 impl fmt::Display for PrincipalAxis {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let named = named(&self.axis).map_or(String::new(), |name| format!(", {name} of the sensor"));
+        let named =
+            named(&self.axis).map_or(String::new(), |name| format!(", the {name} axis of the sensor,"));
         let axis = direction(&self.axis);
         match self.number {
-            Some(number) => write!(f, "{axis}{named} is a principal axis, numbered {number} here"),
-            None => write!(f, "{axis}{named}, about which the body spins, is a principal axis"),
+            Some(number) => write!(f, "{axis}{named} is a principal axis (axis {number} here)"),
+            None => write!(f, "{axis}{named} is a principal axis: the body spins about it"),
         }
     }
 }
@@ -63,16 +65,16 @@ pub enum Undetermined {
 impl fmt::Display for Undetermined {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::Everything => "no ratio and no axis is determined: the motion cannot be told from its noise",
+            Self::Everything => "no ratio and no axis is determined: the motion cannot be distinguished from noise",
             Self::TransverseRatio => {
-                "the ratio of the two moments across the axis of spin is undetermined: the record is a pure spin"
+                "the ratio of the two moments perpendicular to the spin axis is undetermined: the body spins about one axis"
             }
             Self::SpinRatio => {
-                "the ratio of the moment about the axis of spin to the other two is undetermined: nothing compares them"
+                "the ratio of the moment about the spin axis to the other two is undetermined: a spin about one axis does not depend on it"
             }
-            Self::TransverseAxes => "the directions of the principal axes across the axis of spin are undetermined",
+            Self::TransverseAxes => "the directions of the principal axes perpendicular to the spin axis are undetermined",
             Self::Ratios => {
-                "the ratios I1/I2 and I2/I3 are undetermined: the record holds only pure spins about principal axes"
+                "the ratios I1/I2 and I2/I3 are undetermined: the record has only spins about single principal axes"
             }
             Self::Ratio { low, high } => return write!(f, "the ratio I{low}/I{high} is undetermined"),
             Self::Axes { low, high, about } => {
@@ -130,15 +132,14 @@ impl Identifiability {
         let what = match self.null_directions.first() {
             None => return String::new(),
             Some(Undetermined::Everything) => {
-                "spin the body faster, with a wobble that stands out of the noise".into()
+                "spin the body faster, with a wobble well above the noise".into()
             }
             Some(Undetermined::TransverseRatio | Undetermined::SpinRatio | Undetermined::TransverseAxes) => {
                 "record a throw that wobbles: start with rotation about at least two of the principal axes"
                     .into()
             }
             Some(Undetermined::Ratios) => {
-                "record a throw that turns about two or three principal axes at once, which compares them"
-                    .into()
+                "record a throw with rotation about two or three principal axes at once".into()
             }
             Some(Undetermined::Ratio { .. } | Undetermined::Axes { .. }) if times <= LONGER => format!(
                 "start with rotation about all three axes, or record {} times as long",
@@ -146,7 +147,7 @@ impl Identifiability {
             ),
             Some(_) => "start with rotation about all three axes, with a larger wobble".to_string(),
         };
-        format!("{what}; or give a tensor known beforehand, as from CAD, which supplies the rest")
+        format!("{what}; or give a tensor known beforehand, for instance from CAD, as a prior")
     }
 
     /// Both lists in one sentence.
@@ -156,7 +157,11 @@ impl Identifiability {
             (true, _) => "no axis and no ratio, only combinations of them".into(),
             _ => joined(&self.known),
         };
-        format!("{} of 5 numbers are known. {}. Known: {known}", self.rank, joined(&self.null_directions))
+        format!(
+            "{} of 5 numbers are known. {}. Known: {known}",
+            self.rank,
+            capital(&joined(&self.null_directions))
+        )
     }
 }
 
@@ -279,9 +284,9 @@ mod tests {
         assert_eq!(named(&Vector3::new(-1.0, 4e-4, 6e-4)), None);
         assert_eq!(named(&-Vector3::x()), Some("x"));
         let of = |number| PrincipalAxis { axis: -Vector3::x(), number }.to_string();
-        let text = "(1.0000, 0.0000, 0.0000), x of the sensor";
-        assert_eq!(of(Some(3)), format!("{text} is a principal axis, numbered 3 here"));
-        assert_eq!(of(None), format!("{text}, about which the body spins, is a principal axis"));
+        let text = "(1.0000, 0.0000, 0.0000), the x axis of the sensor,";
+        assert_eq!(of(Some(3)), format!("{text} is a principal axis (axis 3 here)"));
+        assert_eq!(of(None), format!("{text} is a principal axis: the body spins about it"));
     }
 
     fn open(null: Vec<Undetermined>, weakest: f64) -> Identifiability {
@@ -304,9 +309,9 @@ mod tests {
         let both = Identifiability { known, ..open(vec![ratio, axes], 0.2) };
         assert_eq!(
             both.verdict(),
-            "3 of 5 numbers are known. the ratio I1/I3 is undetermined; the directions of axes 1 and 2 about axis 3 are \
-             undetermined. Known: (0.0000, 0.0000, 1.0000), z of the sensor is a principal axis, numbered 1 here; \
-             (0.6000, 0.8000, 0.0000) is a principal axis, numbered 2 here"
+            "3 of 5 numbers are known. The ratio I1/I3 is undetermined; the directions of axes 1 and 2 about axis 3 are \
+             undetermined. Known: (0.0000, 0.0000, 1.0000), the z axis of the sensor, is a principal axis (axis 1 here); \
+             (0.6000, 0.8000, 0.0000) is a principal axis (axis 2 here)"
         );
         assert!(!both.complete() && open(Vec::new(), 1e-3).complete());
     }

@@ -70,8 +70,8 @@ impl Origin {
     /// What helps, in words that go on from what the tensor may be.
     pub(crate) fn remedy(self) -> &'static str {
         match self {
-            Self::Sensor => ", unless they are fitted too, with a prior",
-            Self::Wheels => "; look at the inertia, the axis and the speed of each wheel",
+            Self::Sensor => "; calibrate the sensor, or fit this error too, with a prior",
+            Self::Wheels => "; check the inertia, the axis and the speed of each wheel",
             Self::Drift | Self::Body => "",
         }
     }
@@ -99,7 +99,7 @@ impl fmt::Display for Contradiction {
         match *self {
             Self::LeftOut { what, origin: Origin::Sensor } => write!(
                 f,
-                "calibrate the sensor, or let the fit estimate its error with a prior: the record shows {what}, which further records do not average out"
+                "calibrate the sensor, or fit its error with a prior: the record shows {what}; further records do not average out this error"
             ),
             Self::LeftOut { what, origin: Origin::Drift } => write!(
                 f,
@@ -111,15 +111,15 @@ impl fmt::Display for Contradiction {
             ),
             Self::LeftOut { what, origin: Origin::Body } => write!(
                 f,
-                "find out whether there is {what}, and remove it: the record shows it, and further records do not average it out"
+                "find out whether there is {what}, and remove it: the record shows it; further records do not average it out"
             ),
             Self::Parts => f.write_str(
-                "find out why the parts of the record differ: fit them one by one, and look at how the sensor is fixed to the body, at parts that move, \
-                 and at the air; further parts of the same kind do not make the answer surer",
+                "find out why the parts of the record differ: fit them one by one, and check how the sensor is fixed to the body, whether \
+                 something moves in it, and the drag of the air; further records of the same kind do not average this out",
             ),
             Self::Residuals => f.write_str(
-                "find out what the fitted motion leaves beyond the noise: a torque, a part that moves, or a sensor that filters or drifts; \
-                 further samples of the same kind do not average it out",
+                "find out why the residuals are more than noise: a torque, a moving part, or a sensor that filters or drifts; further samples \
+                 of the same kind do not average this out",
             ),
         }
     }
@@ -131,27 +131,28 @@ impl fmt::Display for NextStep {
             Self::FindCause(what) => what.fmt(f),
             Self::Sensor { name, size, unit, times } => write!(
                 f,
-                "calibrate the sensor, or give the fit the deviation of its errors: {name} of {} changes a moment by {times:.1} times its 95 % \
-                 uncertainty by noise, and one of {} by as much as that",
+                "calibrate the sensor, or fit its errors with a prior: {name} of {} changes a moment by {times:.1} times its 95 % uncertainty \
+                 from noise; {name} of {} would change it by as much as this uncertainty",
                 with_unit(size, unit),
                 with_unit(format!("{:.1e}", size / times).parse().unwrap_or(size), unit)
             ),
             Self::Longer => f.write_str(
-                "measure longer, or more often: noise is the largest error that is known, and four times the record at least halves it",
+                "measure longer, or more often: noise is the largest known error, and a record four times as long at least halves it",
             ),
             Self::MoreOften { turn } => write!(
                 f,
-                "measure more often: from one attitude to the next the body turns by up to {turn:.2} rad, and beyond 3.14 rad no motion can be told"
+                "measure more often: from one attitude to the next the body turns by up to {turn:.2} rad, and beyond 3.14 rad attitudes do not \
+                 determine a motion"
             ),
             Self::OtherStart { times, turn, number, gain } => {
                 if turn {
-                    write!(f, "start with more rotation across axis {number}: the turn of the axes about it")?;
+                    write!(f, "start with more rotation perpendicular to axis {number}: the rotation of the other axes about it")?;
                 } else {
                     write!(f, "start about another axis: I{number}")?;
                 }
-                write!(f, " is known {times:.0} times less well than the best-known combination")?;
+                write!(f, " has {times:.0} times the standard deviation of the best-known combination of the entries")?;
                 match gain {
-                    Some(gain) => write!(f, "; a rate of the same size, spread evenly over the three axes, would tell it {gain:.0} times better"),
+                    Some(gain) => write!(f, "; with the same rate, spread evenly over the three axes, its standard deviation would be {gain:.0} times smaller"),
                     None => Ok(()),
                 }
             }

@@ -71,9 +71,9 @@ fn kinds(weak: &WeakEstimate, stretches: &[Stretch], rms: f64) -> Vec<Kind> {
         sensor(ReadingError::AxisScales),
         sensor(ReadingError::Offsets),
         sensor(ReadingError::Delays),
-        of("offsets of the sensor that change", Origin::Drift, walk),
+        of("changing offsets of the sensor", Origin::Drift, walk),
         of(ROTOR, Origin::Body, rotors.map(|column| sized(column, momentum)).to_vec()),
-        of("a torque that is fixed in space, as on a magnet or of a suspension", Origin::Body, magnet),
+        of("a torque on a magnet in a field fixed in space, or by a suspension", Origin::Body, magnet),
     ];
     all.into_iter().chain(told).collect()
 }
@@ -140,7 +140,7 @@ pub(crate) fn refuted(
     let of = |error: ReadingError| (error.in_words(), error.columns(stretches, units));
     let all = [
         of(ReadingError::Offsets),
-        ("an error of scale of the sensor", vec![Column::new(Scale, Some(LARGEST))]),
+        ("a scale error of the sensor", vec![Column::new(Scale, Some(LARGEST))]),
         of(ReadingError::AxisScales),
         of(ReadingError::Misalignment),
         of(ReadingError::Delays),
@@ -315,7 +315,7 @@ mod tests {
             assert!((found.gain / gain - 1.0).abs() < 1e-5, "{prior}: {} {gain}", found.gain);
             let size = v.abs() * LARGEST * LARGEST / (square + LARGEST * LARGEST);
             assert!((found.size / size - 1.0).abs() < 1e-5 && found.prior == prior, "{found:?} {size}");
-            assert_eq!((found.what, found.unit), ("an error of scale of the sensor", ""));
+            assert_eq!((found.what, found.unit), ("a scale error of the sensor", ""));
         }
     }
 }

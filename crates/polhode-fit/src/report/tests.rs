@@ -550,8 +550,8 @@ fn alternating_residuals_remember_each_lag_alike() {
 #[test]
 fn warnings_count_in_words_that_agree() {
     let flat = |samples: usize| Warning::Saturated { samples }.to_string();
-    assert_eq!(flat(1), "1 sample at the end of the sensor's range (flat tops) was left out");
-    assert_eq!(flat(2), "2 samples at the end of the sensor's range (flat tops) were left out");
+    assert_eq!(flat(1), "1 sample at the end of the sensor's range (saturated) was left out");
+    assert_eq!(flat(2), "2 samples at the end of the sensor's range (saturated) were left out");
     let short = |short: usize| Warning::ShortSegments { short, segments: 3 }.to_string();
     assert_eq!(short(1), "1 of 3 segments was left out as too short for the fit");
     assert_eq!(short(2), "2 of 3 segments were left out as too short for the fit");

@@ -301,39 +301,43 @@ impl fmt::Display for Warning {
             }
             Self::Repeated { samples, rate } => write!(
                 f,
-                "{} left out as repeated readings: the log is written faster than its sensor reads, new readings come at {} Hz",
+                "{} left out as repeated readings: the log is written faster than the sensor reads; new readings come at {} Hz",
                 counted(*samples, "was", "were"),
                 four_digits(*rate)
             ),
             Self::Stale { samples } => write!(
                 f,
-                "{} left out as repeating the reading before: the sensor stood still there, or the log lost what it read",
+                "{} left out as repeating the reading before: the sensor or its log stalled there",
                 counted(*samples, "was", "were")
             ),
             Self::Saturated { samples } => {
                 let (subject, verb) = if *samples == 1 { ("sample", "was") } else { ("samples", "were") };
-                write!(f, "{samples} {subject} at the end of the sensor's range (flat tops) {verb} left out")
+                write!(f, "{samples} {subject} at the end of the sensor's range (saturated) {verb} left out")
             }
             Self::Spikes { samples, line } => write!(
                 f,
-                "{} left out as standing far out of what their neighbours foresee; the first is in line {line}",
+                "{} left out as far from what the neighbouring samples predict (spikes); the first is in line {line}",
                 counted(*samples, "was", "were")
             ),
             Self::Bursts { samples, bursts, line } => {
                 let plural = if *bursts == 1 { "burst" } else { "bursts" };
                 write!(
                     f,
-                    "{} left out in {bursts} {plural}: consecutive samples that stand far out of those before and after \
-                     them, which agree with each other; the first is in line {line}",
+                    "{} left out in {bursts} {plural} of consecutive samples, far from those before and after, which agree with each \
+                     other; the first is in line {line}",
                     counted(*samples, "was", "were")
                 )
             }
             Self::TorqueNoise { density, unexplained } => {
-                write!(f, "torques at random are part of the fit: their angular acceleration has a density of up to {density:.1e} (rad/s^2)^2 s")?;
+                write!(
+                    f,
+                    "torque noise is part of the fit: its angular acceleration has a power spectral density of up to {density:.1e} \
+                     (rad/s^2)^2 s"
+                )?;
                 if let Some(share) = unexplained {
-                    write!(f, ", and free motion leaves {} of the squared derivative of the rates unexplained", per_cent(*share))?;
+                    write!(f, "; free motion leaves {} of the squared angular acceleration unexplained", per_cent(*share))?;
                 }
-                f.write_str("; errors of the measurement may look like them")
+                f.write_str("; errors of the measurement may look like torque noise")
             }
             Self::ShortSegments { short, segments } => {
                 let verb = if *short == 1 { "was" } else { "were" };
@@ -341,24 +345,24 @@ impl fmt::Display for Warning {
             }
             Self::StatedNoise { stated, shown } => write!(
                 f,
-                "the noise is stated as {stated:.2e} rad/s, and the readings show {shown:.2e} rad/s: {UNSTATED}"
+                "the stated noise is {stated:.2e} rad/s, and the readings show {shown:.2e} rad/s: {UNSTATED}"
             ),
             Self::StatedAttitudeNoise { stated, shown } => write!(
                 f,
-                "the noise of the attitudes is stated as {stated:.2e} rad, and they show {shown:.2e} rad, so that deviations are too wide: {UNSTATED}"
+                "the stated noise of the attitudes is {stated:.2e} rad, and they show {shown:.2e} rad, so that the standard deviations are too large: {UNSTATED}"
             ),
             Self::Filtered { correlation, times } => write!(
                 f,
-                "the noise of neighbouring readings is correlated by {correlation:.2}, as where a sensor or a log averages, filters or \
-                 interpolates: over many readings it is {times:.1} times what neighbours show; the deviations are too narrow by up to that factor \
-                 where residuals have not enlarged them, and torques at random may be nothing but this noise"
+                "the noise of neighbouring readings has the correlation {correlation:.2}: the sensor or the log may average, filter or \
+                 interpolate. Over many readings the noise is {times:.1} times what neighbours show. Standard deviations that the residuals \
+                 have not enlarged may be too small by up to this factor, and fitted torque noise may be noise of the readings"
             ),
             Self::Residuals { times, noise } => {
                 let times = if *times < 1e4 { format!("{times:.1}") } else { format!("{times:.1e}") };
                 write!(
                     f,
-                    "the residuals are {times} times what the noise of {noise:.2e} rad/s explains: torques, outliers or \
-                     a sensor that filters; deviations are enlarged by that factor"
+                    "the residuals are {times} times what the noise of {noise:.2e} rad/s explains: torques, outliers, or a sensor that \
+                     filters; the standard deviations are enlarged by this factor"
                 )
             }
             Self::NotConverged { moved } => write!(
@@ -368,53 +372,53 @@ impl fmt::Display for Warning {
             ),
             Self::Units { products, unexplained, other } => write!(
                 f,
-                "the record cannot tell its units: {} would explain it as well by another body ({} of the squared derivative \
-                 of the rates is left, {} as read); make sure of them",
+                "the record cannot tell its units: with {}, another body would explain it as well ({} of the squared angular acceleration \
+                 unexplained, {} as read); check the units",
                 alternatives(products),
                 per_cent(*other),
                 per_cent(*unexplained)
             ),
             Self::Memory(Memory { chi2, dof }) => write!(
                 f,
-                "residuals within one turn of the body are correlated (chi squared {chi2:.0} of {dof}): what acts is no white noise, as of a \
-                 magnet, a fluid or a part that moves, or the sensor has errors; the deviations leave that out"
+                "residuals within one turn of the body are correlated (chi squared {chi2:.0} of {dof} degrees of freedom): a torque acts that \
+                 is not white noise, such as that of a magnet, a fluid or a moving part, or the sensor has errors; the standard deviations do \
+                 not include this"
             ),
             Self::Blow(Blow { segment, time, deviations }) => write!(
                 f,
-                "at {time:.3} s of segment {} the equations leave {deviations:.1} standard deviations, which noise does not bring: a blow, or a \
-                 body or a sensor that changes there; the tensor may be off by more than its deviations: fit what is before and what is after, \
-                 each by itself",
+                "at {time:.3} s of segment {} the residual of the equations is {deviations:.1} standard deviations, more than noise explains: \
+                 a blow, or a sudden change of the body or the sensor. The tensor may be wrong by more than its standard deviations; fit the \
+                 parts before and after separately",
                 segment + 1
             ),
             Self::Vibration { times, noise } => write!(
                 f,
-                "the free motion of this tensor leaves {times:.2} times the noise of {noise:.3e} rad/s of the samples: a part of the body \
-                 moves, it vibrates, or the sensor has errors"
+                "the samples differ from the free motion of this tensor by {times:.2} times their noise of {noise:.3e} rad/s: a part of the \
+                 body moves or vibrates, or the sensor has errors"
             ),
             Self::Correlated(Whiteness { correlation, sigma }) => write!(
                 f,
-                "neighbouring residuals are correlated by {correlation:.2} +- {sigma:.2}: the noise is not white or the \
-                 model is wrong"
+                "the correlation of neighbouring residuals is {correlation:.2} +- {sigma:.2}: the noise is not white, or the model is wrong"
             ),
             Self::MomentumTrend(trend) => torque(f, "momentum |J w|", trend),
             Self::EnergyTrend(trend) => torque(f, "energy w J w", trend),
             Self::ZeroInputs => f.write_str(
-                "the wheel momenta and torques of the record are zero in all its samples: the fit is that of a body without any, and its size \
-                 stays unknown; if a wheel turned, give its momentum",
+                "the wheel momenta and torques of the record are zero in all samples: the fit is that of a body without them, and the size of \
+                 the tensor is unknown; if a wheel turned, give its momentum",
             ),
             Self::NoScale { size } if *size < -NEGATIVE => write!(
                 f,
-                "the wheel momenta and torques give the tensor a negative size, by {:.0} of its deviations: their sign is wrong",
+                "the wheel momenta and torques give the tensor a negative size, by {:.0} standard deviations: their sign is wrong",
                 -size
             ),
             Self::NoScale { .. } => f.write_str(
-                "the size of the tensor is unknown: the wheel momenta and torques do not stand out of the noise",
+                "the size of the tensor is unknown: the effect of the wheel momenta and torques does not exceed the noise",
             ),
             Self::Torque(torque) => reckoned(f, torque),
             Self::AsWell { error, size, gain } => write!(
                 f,
-                "{}, up to {}, without any torque would explain the record as well as this torque does (log-likelihood {} by {:.1}): the \
-                 deviations reach both",
+                "instead of this torque, {} of up to {} would explain the record as well (log-likelihood {} by {:.1}); the standard \
+                 deviations cover both",
                 error.in_words(),
                 error.of_size(*size),
                 if *gain < 0.0 { "lower" } else { "higher" },
@@ -422,9 +426,9 @@ impl fmt::Display for Warning {
             ),
             Self::TwoTensors { parts: Halves { share, first, second, .. }, gain } => write!(
                 f,
-                "or else the segments have two tensors: without any torque these would explain the record as well as this torque does \
-                 (log-likelihood {} by {:.1}), I1 : I2 : I3 = {} of the first {:.0} % and {} of the rest; make sure that all segments are of \
-                 one body, and that the sensor is fixed to it alike; the deviations leave that out",
+                "instead of this torque, two tensors would explain the record as well (log-likelihood {} by {:.1}): I1 : I2 : I3 = {} for the \
+                 first {:.0} % and {} for the rest. Check that all segments are of one body, with the sensor fixed to it in the same way. The \
+                 standard deviations do not include this",
                 if *gain < 0.0 { "lower" } else { "higher" },
                 gain.abs(),
                 moments(first),
@@ -433,16 +437,16 @@ impl fmt::Display for Warning {
             ),
             Self::ConstantTorque { gain, turn } => write!(
                 f,
-                "a constant torque, which is no part of the fit, would explain the record better (log-likelihood higher by {gain:.1}); it would \
-                 turn the body by {turn:.2} rad within half of the longest segment: fit shorter windows, in which it turns the body by less than \
-                 {LINEAR} rad, with a constant torque, or the rates"
+                "a constant torque, which is not part of the fit, would explain the record better (log-likelihood higher by {gain:.1}). It would \
+                 turn the body by {turn:.2} rad within half of the longest segment; fit it in windows so short that this is less than {LINEAR} \
+                 rad, or fit the rates"
             ),
             Self::LeftOut { what, size, unit, gain, origin } => {
                 let size = format!("{size:.1e} {unit}");
                 write!(
                     f,
-                    "{what}, up to {}, would explain the record better than what was fitted (log-likelihood higher by {gain:.0}): \
-                     the tensor may be off by more than its deviations{}",
+                    "{what}, up to {}, would explain the record better than the fitted model (log-likelihood higher by {gain:.0}): \
+                     the tensor may be wrong by more than its standard deviations{}",
                     size.trim_end(),
                     origin.remedy()
                 )
@@ -452,35 +456,37 @@ impl fmt::Display for Warning {
                     (size / prior, format!("{size:.1e} {unit}"), format!("{prior:.1e} {unit}"));
                 write!(
                     f,
-                    "{what}, up to {}, would be {times:.0} times the standard deviation of {} that was given for it, and explain the record \
-                     better (log-likelihood higher by {gain:.0}): the tensor may be off by more than its deviations; give a larger one",
+                    "{what}, up to {}, {times:.0} times the prior standard deviation of {} that was given, would explain the record better \
+                     (log-likelihood higher by {gain:.0}): the tensor may be wrong by more than its standard deviations; give a larger prior \
+                     standard deviation",
                     size.trim_end(),
                     prior.trim_end()
                 )
             }
             Self::Halves(Halves { share, first, second, chi2 }) => write!(
                 f,
-                "the first {:.0} % of the record say I1 : I2 : I3 = {}, the rest {} (chi squared {chi2:.0} of 5): a tensor that changes, as \
-                 where something moves in the body, or a torque or error of the sensor that is no part of the fit",
+                "the first {:.0} % of the record give I1 : I2 : I3 = {}, the rest {} (chi squared {chi2:.0} of 5 degrees of freedom): the tensor \
+                 changes, for instance because something moves in the body, or a torque or an error of the sensor is not part of the fit",
                 100.0 * share,
                 of_part(first),
                 of_part(second)
             ),
             Self::Scatter(scatter @ Scatter { parts, chi2, dof }) => write!(
                 f,
-                "the tensors of {parts} parts of the record, each by itself, scatter by more than their noise (chi squared {chi2:.0} of {dof}): \
-                 a torque or an error of the sensor that is no part of the fit, or a tensor that changes; deviations are enlarged by {:.1}",
+                "the tensors of {parts} parts of the record scatter by more than their noise (chi squared {chi2:.0} of {dof} degrees of \
+                 freedom): the tensor changes, or a torque or an error of the sensor is not part of the fit; the standard deviations are \
+                 enlarged by a factor of {:.1}",
                 scatter.excess().sqrt()
             ),
             Self::Differing { unknowns } => {
                 f.write_str("the parts of the record differ by more than their noise in ")?;
                 for (k, (name, times)) in unknowns.iter().enumerate() {
                     let comma = if k > 0 { ", " } else { "" };
-                    write!(f, "{comma}{name} (deviation enlarged by {times:.1})")?;
+                    write!(f, "{comma}{name} (standard deviation enlarged by a factor of {times:.1})")?;
                 }
                 f.write_str(
-                    ": torques of another form than those of the fit, or a sensor that changes; what is correlated with these is less \
-                     certain as well",
+                    ": the torque has another form than that of the fit, or the sensor changes; the standard deviations of what is correlated \
+                     with these grow too",
                 )
             }
             Self::NoisySegment { segment, start, times } => write!(
@@ -489,72 +495,73 @@ impl fmt::Display for Warning {
                 segment + 1
             ),
             Self::Held(ActiveConstraint { constraint, multiplier }) => {
-                write!(f, "{constraint} is an active constraint (multiplier {multiplier:.3e})")
+                write!(f, "{constraint} is an active constraint (Lagrange multiplier {multiplier:.3e})")
             }
             Self::Contradiction { pull } => write!(
                 f,
-                "the physical law and the limits move the tensor {pull:.1} standard deviations from the unconstrained \
-                 estimate: the record contradicts them"
+                "the physical limits (I1 + I2 >= I3, no negative drag) and those that were given move the tensor by {pull:.1} standard \
+                 deviations: the record contradicts them"
             ),
             Self::Uncertain { deviation } => write!(
                 f,
-                "the tensor has a standard deviation of {:.1} per cent of its trace: above half a per cent the linear \
-                 covariance is only approximate",
+                "the tensor has a standard deviation of {:.1} per cent of its trace; above half a per cent its covariance, which is computed to \
+                 first order, is only approximate",
                 100.0 * deviation
             ),
             Self::EqualMoments { low, high } => write!(
                 f,
-                "moments {low} and {high} agree within their errors: the directions of their axes are arbitrary"
+                "moments {low} and {high} agree within their standard deviations: the directions of their axes are undetermined"
             ),
             Self::RepeatedAttitudes { samples } => {
                 write!(f, "{} left out as repeating the attitude before", counted(*samples, "was", "were"))
             }
             Self::Outliers { samples } => write!(
                 f,
-                "{} left out as standing far out of the motion, in attitude or rate",
+                "{} left out as far from the fitted motion, in attitude or rate",
                 counted(*samples, "was", "were")
             ),
             Self::CoarseAttitudes { turn } => write!(
                 f,
-                "from one attitude to the next the body turns by up to {turn:.2} rad: one that turns the other way round by {:.2} rad would \
-                 look the same; make sure that it is not that fast",
+                "from one attitude to the next the body turns by up to {turn:.2} rad: a turn by {:.2} rad the other way round would give the \
+                 same attitudes; make sure that the body is not that fast",
                 core::f64::consts::TAU - turn
             ),
             Self::AttitudeResiduals { times, noise } => write!(
                 f,
-                "the free motion leaves {times:.1} times what the noise of the attitudes of {noise:.2e} rad explains: torques, or errors \
-                 that last over many attitudes; deviations are enlarged by that factor"
+                "the residuals of the attitudes are {times:.1} times what their noise of {noise:.2e} rad explains: torques, or errors that last \
+                 over many attitudes; the standard deviations are enlarged by this factor"
             ),
             Self::MovingAxes { turn, gain } => write!(
                 f,
-                "the axes of attitudes and rates move against each other, by {turn:.2e} rad from the first sample to the last (log-likelihood \
-                 higher by {gain:.0}): the fit reckons with an even turn; fix both to the body, or compare their clocks"
+                "the axes of attitudes and rates turn against each other by {turn:.2e} rad from the first sample to the last (log-likelihood \
+                 higher by {gain:.0}): the fit includes a uniform turn; fix both sensors to the body, or compare their clocks"
             ),
             Self::RateOffset { size, gain, is_fitted } => write!(
                 f,
-                "an offset of the rates of {size:.1e} rad/s explains the record better (log-likelihood higher by {gain:.0}): {}; calibrate the \
+                "an offset of the rates of {size:.1e} rad/s explains the record better (log-likelihood higher by {gain:.0}); {}. Calibrate the \
                  gyroscope at rest",
                 taken_out(*is_fitted)
             ),
             Self::RateScale { scale, gain, is_fitted } => write!(
                 f,
-                "an error of the scale of the rates of {:+.2} % explains the record better (log-likelihood higher by {gain:.0}): {}; calibrate the \
+                "a scale error of the rates of {:+.2} % explains the record better (log-likelihood higher by {gain:.0}); {}. Calibrate the \
                  gyroscope",
                 100.0 * scale,
                 taken_out(*is_fitted)
             ),
             Self::RateResiduals { times, noise } => write!(
                 f,
-                "the motion leaves {times:.1} times what the noise of the rates of {noise:.2e} rad/s explains: errors of the gyroscope that \
-                 last over many samples, as a delay or axes that are not at right angles, or torques; deviations are enlarged by that factor"
+                "the residuals of the rates are {times:.1} times what their noise of {noise:.2e} rad/s explains: torques, or errors of the \
+                 gyroscope that last over many samples, such as a delay or axes that are not at right angles; the standard deviations are \
+                 enlarged by this factor"
             ),
             Self::Profile { times } => write!(
                 f,
-                "tensors far from this one explain the record nearly as well: the deviations are {times:.1} times those of the second derivative \
-                 of the likelihood, so that they reach these; a motion that wobbles more, or a longer record, would tell them apart"
+                "tensors far from this one explain the record nearly as well: the standard deviations are enlarged by a factor of {times:.1} to \
+                 include them; a motion with more wobble, or a longer record, would tell them apart"
             ),
             Self::FewEquations { dof } => {
-                write!(f, "only {dof} degrees of freedom: chi squared is no reliable check")
+                write!(f, "only {dof} degrees of freedom: chi squared is not a reliable check")
             }
         }
     }
@@ -563,16 +570,16 @@ impl fmt::Display for Warning {
 /// What the fit makes of an error of the rates.
 fn taken_out(is_fitted: bool) -> &'static str {
     if is_fitted {
-        "the fit takes it out"
+        "the fit corrects for it"
     } else {
-        "it is no part of the fit, and the tensor may be off by more than its deviations"
+        "it is not part of the fit, and the tensor may be wrong by more than its standard deviations"
     }
 }
 
 /// The moments by a part of a record, which may tell no more than that it is no rotation of a body.
 fn of_part(shares: &[f64; 3]) -> String {
     let is_of_body = shares[0] > -BEYOND && shares[2] < LARGEST_SHARE + BEYOND;
-    moments(shares) + if is_of_body { "" } else { " of no body" }
+    moments(shares) + if is_of_body { "" } else { ", which no rigid body has" }
 }
 
 /// As shares of the trace.
@@ -589,7 +596,7 @@ fn reckoned(f: &mut fmt::Formatter<'_>, torque: &FittedTorque) -> fmt::Result {
     let values =
         torque.coefficients.iter().map(|c| format!("{} {} {}", c.name, with_sigma(c.value, c.sigma), c.unit));
     let values: Vec<String> = values.collect();
-    write!(f, "not free of torques: the fit reckons with {}", values.join(", "))?;
+    write!(f, "not free of torques: the fit includes {}", values.join(", "))?;
     match torque.ratios_without {
         Some([first, second]) => write!(f, "; without it I1/I3 would be {first:.4} and I2/I3 {second:.4}"),
         None => Ok(()),

@@ -397,7 +397,7 @@ fn a_torque_that_is_fixed_in_space_is_named() {
         });
         if let Some((what, found)) = found {
             named[usize::from(size == 0.0)] += 1;
-            assert!(what.starts_with("a torque that is fixed in space"), "{what}");
+            assert!(what.starts_with("a torque on a magnet"), "{what}");
             assert!((0.2..5.0).contains(&(found / size)), "{found}");
         }
         let line = e.systematic.iter().find(|line| line.name == "magnet").unwrap();

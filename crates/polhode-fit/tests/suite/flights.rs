@@ -225,7 +225,7 @@ fn a_body_that_is_never_let_go_has_no_flight() {
         let FitError::NoFlight { share, torque, most } = error.clone() else { panic!("{error:?}") };
         assert!(share > 0.1 && share <= 1.0 && most == 0.02, "{share}");
         assert!(torque.is_none_or(|torque| torque > most && torque < 10.0), "{torque:?}");
-        let says = "the body rotates freely nowhere in the record: torques beyond 0.3 tr(J) |w|^2 act in ";
+        let says = "the body rotates freely nowhere in the record: torques above 0.3 tr(J) |w|^2 act in ";
         assert!(error.to_string().starts_with(says), "{error}");
     }
 }

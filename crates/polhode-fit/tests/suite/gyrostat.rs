@@ -305,7 +305,7 @@ fn a_component_of_the_wheel_that_is_told_wrong_is_refused_by_its_factor() {
             found.iter().find(|found| found.axis == axis).unwrap_or_else(|| panic!("{axis}: {error}"));
         assert!((named.factor * factor - 1.0).abs() < 5.0 * named.sigma * factor, "{axis}: {error}");
         let text = error.to_string();
-        assert!(text.contains(&format!("h{} is ", ["x", "y", "z"][axis])), "{text}");
+        assert!(text.contains(&format!("h{} were ", ["x", "y", "z"][axis])), "{text}");
     }
 }
 
@@ -355,7 +355,7 @@ fn momenta_that_are_zero_throughout_are_told() {
             Err(error) => {
                 let text = error.to_string();
                 assert!(share == 1.0 && matches!(error, FitError::ZeroInputs(_)), "{text}");
-                assert!(text.contains("zero in all its samples"), "{text}");
+                assert!(text.contains("zero in all samples"), "{text}");
             }
         }
     }

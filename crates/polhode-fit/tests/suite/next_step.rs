@@ -39,7 +39,7 @@ fn the_largest_error_is_named_first() {
     // calibrated to the size that is named, the error is half a 95 % interval
     let told = quiet.next_steps()[0].to_string();
     let calibrated = format!("{:.1e}", line.size / times).parse::<f64>().unwrap();
-    assert!(told.contains(&format!("one of {calibrated}")), "{told}");
+    assert!(told.contains(&format!("{name} of {calibrated}")), "{told}");
 
     let noisy = fitted(tumbling, 0.1, 20);
     assert_eq!(noisy.next_steps().first(), Some(&NextStep::Longer));

@@ -176,8 +176,8 @@ fn a_body_that_a_motor_drives_contradicts_drag() {
     assert!((growth - 0.02).abs() < 2e-3 && pull > 20.0, "{growth} {pull}");
     let text = refused.to_string();
     assert!(
-        text.starts_with("the body is driven")
-            && text.contains("driven, and no tensor can be told: |J w| grows by 1.9"),
+        text.starts_with("torques drive the body")
+            && text.contains("does not determine its tensor: |J w| grows by 1.9"),
         "{text}"
     );
 }
@@ -329,7 +329,9 @@ fn spikes_are_left_out_and_named() {
                 "{} of {spikes}",
                 e.spikes.len()
             );
-            assert!(e.warnings.iter().any(|w| w.to_string().contains("what their neighbours foresee")));
+            assert!(
+                e.warnings.iter().any(|w| w.to_string().contains("what the neighbouring samples predict"))
+            );
         }
         trials.add(result, &j, &bound);
     }
