@@ -126,13 +126,13 @@ impl KnownArguments {
         }
         if estimate.mirror.as_ref().is_some_and(is_mirror) {
             return Ok(Some(
-                "the moments are not those of --body, and in left-handed axes they would be: a mirrored axis would explain it (--axes)".into(),
+                "the moments are not those of --body, but would be in left-handed axes: check for a mirrored axis (--axes)".into(),
             ));
         }
         let shares = |moments: [f64; 3]| moments.map(|share| format!("{share:.3}")).join(" : ");
         Ok((read > OTHER).then(|| {
             format!(
-                "the moments are {} of the trace, and those of --body, whose trace gives the size, {}: make sure that it is this body",
+                "the moments are {} of the trace, and those of --body {}: its trace gives the size, so make sure that it is this body",
                 shares(estimate.principal),
                 shares(of_body)
             )

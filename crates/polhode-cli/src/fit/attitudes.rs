@@ -54,13 +54,13 @@ impl Chosen {
         let (beside, text) = match self {
             Self::Rates { beside } => (
                 beside,
-                "the rates are fitted, and the attitudes beside them are not: --from both fits both where their errors \
-                 are independent, which those of attitudes that were computed from these rates are not",
+                "the rates are fitted, and the attitudes beside them are not. --from both fits both, but their errors must be \
+                 independent: not for attitudes that were computed from these rates",
             ),
             Self::Attitudes { beside } => (
                 beside,
-                "its attitudes are fitted, and the rates beside them are not, since another file has attitudes alone: fit \
-                 the files apart, or state --from attitudes",
+                "its attitudes are fitted, and the rates beside them are not, because another file has attitudes alone: fit \
+                 the files separately, or state --from attitudes",
             ),
         };
         for path in beside {
@@ -144,7 +144,7 @@ impl PoseArguments {
             if let Some(Left { body, space }) = about_space(&rows.times, &attitudes, &rates, claims.attitude)
             {
                 let rule = format!(
-                    "its rates are those about the axes of space: the turns of its attitudes differ from them by {space:.1e} rad/s there, and by {body:.1e} rad/s about the axes of the body"
+                    "its rates are those about the axes of space: there they differ by {space:.1e} rad/s from those of its attitudes, about the axes of the body by {body:.1e} rad/s"
                 );
                 let remedy = "turn them into axes of the body, fit --from attitudes, or state --from rates to fit them as they are";
                 return Err(Error::input(&name, "", &rule, remedy));
@@ -175,7 +175,7 @@ impl PoseArguments {
             return Err(Error::input("--rate-unit", &unit.to_string(), rule, remedy));
         }
         if let Some(share) = reading.skipped_share() {
-            let rule = "of attitudes every row is read";
+            let rule = "every row of attitudes is read";
             let remedy = "leave it out, and remove the rows that cannot be read";
             return Err(Error::input("--skip-rows", &share.to_string(), rule, remedy));
         }
@@ -275,7 +275,7 @@ fn joined(before: Read, next: Read, path: &Path) -> Result<Read, Error> {
             &path.display().to_string(),
             "",
             rule,
-            "fit the files apart, or state --attitude",
+            "fit the files separately, or state --attitude",
         ));
     }
     let form = if before.form == next.form { before.form } else { format!("{}; {}", before.form, next.form) };
@@ -299,19 +299,19 @@ fn convention(rows: &Trajectory, claims: &Convention, name: &str) -> Result<Read
     match &rows.attitude {
         Some(Attitudes::Quaternions(_)) if claims.quaternion.is_none() => {
             return refused(
-                "the numbers of its quaternions do not tell which is the scalar, nor does the motion: read the other way they are the inverse attitudes in turned axes",
+                "neither the numbers of its quaternions nor the motion shows which component is the scalar",
                 "state --quaternion wxyz or xyzw",
             );
         }
         Some(Attitudes::Quaternions(_)) => reading.quaternion = claims.quaternion,
         Some(Attitudes::Angles(_)) if claims.angles.is_none() => {
             return refused(
-                "it has Euler angles of a sequence that it does not name",
+                "it does not name the sequence of its Euler angles",
                 "state --euler, as zyx, or zyx:extrinsic",
             );
         }
         Some(Attitudes::Angles(_)) if claims.angle_unit.is_none() => {
-            return refused("it has Euler angles without a unit", "state --angle-unit rad or deg");
+            return refused("it does not name the unit of its Euler angles", "state --angle-unit rad or deg");
         }
         Some(Attitudes::Angles(_)) => reading.angles = claims.angles,
         _ => {}
@@ -328,7 +328,7 @@ fn rates(
     name: &str,
 ) -> Result<Vec<Vector3<f64>>, Error> {
     if claims.omega_frame == Some(Frame::Space) {
-        let rule = "its angular velocity is in axes of space, and a sensor on the body reads it in those of the body";
+        let rule = "its angular velocity is in axes of space, and the fit needs it in axes of the body";
         return Err(Error::input(name, "", rule, "fit its attitudes alone: --from attitudes"));
     }
     let mut convention = *convention;

@@ -35,8 +35,8 @@ impl Spans {
             count => format!("{count} flights"),
         };
         let remark = format!(
-            "the record as a whole is not that of a free body: the fit uses {count}, {free:.2} s of {all:.2} s in which \
-             the body rotates freely; --window names others{}",
+            "the record as a whole is not that of a free body: the fit uses {count} of free rotation, {free:.2} s of {all:.2} s; \
+             --window selects others{}",
             others.map_or_else(String::new, |others| format!("; {others}"))
         );
         *record = during(record, &list);

@@ -253,7 +253,7 @@ impl Fit {
     /// The attitudes of the files, which go with no wheel.
     fn attitudes(&self) -> Result<Read, Error> {
         if self.wheel.momentum().is_some() {
-            let rule = "a wheel goes with rates";
+            let rule = "a wheel is fitted with rates, and attitudes are fitted";
             return Err(Error::input("--wheel", "", rule, "leave it out, or fit the rates: --from rates"));
         }
         self.poses.read(&self.data, &self.reading)

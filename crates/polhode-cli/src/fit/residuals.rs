@@ -9,7 +9,7 @@ pub(super) fn rows(record: &Record, motion: &[FittedMotion]) -> Table {
     let columns = vec![
         Column::new("segment", "", "number of the segment"),
         Column::new("t", "s", "time"),
-        rate("wx", "measured rate about x, less what was found of the sensor"),
+        rate("wx", "measured rate about x, corrected for the fitted errors of the sensor"),
         rate("wy", "the same about y"),
         rate("wz", "the same about z"),
         rate("fitted_x", "rate of the fitted motion about x"),

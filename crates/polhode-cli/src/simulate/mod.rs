@@ -105,7 +105,7 @@ impl Simulate {
         let unit = self.rate_unit.map_or(1.0, |Factor(unit)| unit);
         let Some(start) = self.omega.map(|omega| omega.map(|w| w * unit)).or(published) else {
             return Err(Error::Input(
-                "--omega: missing; give --omega wx,wy,wz; bodies of the catalogue have one".into(),
+                "--omega: missing; give --omega wx,wy,wz (only bodies of the catalogue have one)".into(),
             ));
         };
         let gyroscope = self.gyroscope.gyroscope();
@@ -171,8 +171,8 @@ impl Simulate {
     fn check_sensor(&self, gyroscope: &Gyroscope) -> Result<(), Error> {
         if !self.gyroscope.has_rates() && *gyroscope != Gyroscope::default() {
             return Err(Error::Input(
-                "--attitude-noise: alone it writes attitudes without rates, which errors of the rate sensor do not change; give --noise \
-                 too, or leave these errors out"
+                "--attitude-noise: without --noise the record has attitudes and no rates, and errors of the rate sensor do not change them; \
+                 give --noise too, or leave these errors out"
                     .into(),
             ));
         }

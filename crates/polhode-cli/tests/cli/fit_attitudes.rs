@@ -83,7 +83,7 @@ fn one_motion_is_read_from_quaternions_matrices_and_angles_alike() {
     // numbers without names leave the scalar open, and so does the motion
     let last = quaternions.iter().map(|[t, w, x, y, z]| vec![*t, *x, *y, *z, *w]);
     let last = scratch.file("last.csv", table("t,q0,q1,q2,q3", last));
-    refused(2, &format!("fit {last}"), &["--quaternion wxyz or xyzw", "nor does the motion"]);
+    refused(2, &format!("fit {last}"), &["--quaternion wxyz or xyzw", "nor the motion shows"]);
     let stated = json(&format!("fit {last} --quaternion xyzw"));
     assert!((of(&stated) - of(&whole)).abs() < 1e-9);
     assert_eq!(stated["attitudes"]["reading"], "quaternion x,y,z,w");
@@ -209,7 +209,7 @@ fn rates_beside_attitudes_are_fitted_where_they_are_asked_for() {
     );
     assert!(both["sigma_principal"][0].as_f64() < rates["sigma_principal"][0].as_f64());
     let page = fs::read_to_string(page).unwrap();
-    assert!(page.contains("Attitudes") && page.contains("body to space (told by the motion"), "{page}");
+    assert!(page.contains("Attitudes") && page.contains("body to space (found from the motion"), "{page}");
     let residuals = fs::read_to_string(residuals).unwrap();
     assert!(residuals.starts_with("segment,t,turn_x,turn_y,turn_z\n1,0"), "{residuals}");
     assert_eq!(residuals.lines().count(), 202);
@@ -217,7 +217,7 @@ fn rates_beside_attitudes_are_fitted_where_they_are_asked_for() {
     for line in [
         "attitudes read as quaternion w,x,y,z, body to space",
         "noise of a component of the rotation vector",
-        "halves of the record are not compared",
+        "parts of the record are not compared",
     ] {
         assert!(text.contains(line), "{text}");
     }

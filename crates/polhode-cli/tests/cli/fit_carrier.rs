@@ -172,7 +172,7 @@ fn what_a_joint_fit_cannot_use_is_refused() {
     // the same under another name
     let copy = scratch.file("copy.csv", std::fs::read_to_string(&carrier).unwrap());
     let twice = run(&format!("fit --carrier {carrier} --proof {copy} {PROOF}"));
-    let says = "the record of carrier and proof body has rates of that of carrier";
+    let says = "the record of carrier and proof body has samples of that of carrier";
     assert!(twice.code == 2 && twice.err.contains(says), "{twice:?}");
     // answers that the records do not hold
     let same = scratch.0.join("same.csv").display().to_string();
@@ -196,7 +196,11 @@ fn what_a_joint_fit_cannot_use_is_refused() {
     {
         let other = run(&mistaken);
         assert_eq!(other.code, 1, "{mistaken}: {}", other.err);
-        assert!(other.err.contains("the two shapes differ the other way"), "{mistaken}: {}", other.err);
+        assert!(
+            other.err.contains("the shape changes in the direction opposite"),
+            "{mistaken}: {}",
+            other.err
+        );
     }
     // a mistaken proof body, or a wrong sign in its place
     for mistaken in [
@@ -205,6 +209,6 @@ fn what_a_joint_fit_cannot_use_is_refused() {
     ] {
         let wrong = run(&format!("{line} --proof-body {mistaken}"));
         assert_eq!(wrong.code, 1, "{}", wrong.err);
-        assert!(wrong.err.contains("leave the size open: chi squared is"), "{}", wrong.err);
+        assert!(wrong.err.contains("do not determine the size: chi squared is"), "{}", wrong.err);
     }
 }

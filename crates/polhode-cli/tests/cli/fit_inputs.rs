@@ -86,7 +86,7 @@ fn a_wheel_is_calibrated_by_a_body_that_is_known() {
 
     let reversed = run(&format!("fit {record} --calibrate-wheel 0,0,-1 --body {body}"));
     assert_eq!(reversed.code, 2, "{reversed:?}");
-    assert!(reversed.err.contains("the moment of the wheel would be -"), "{}", reversed.err);
+    assert!(reversed.err.contains("the moment of inertia of the wheel would be -"), "{}", reversed.err);
     assert!(reversed.err.contains("reverse the axis of the wheel"), "{}", reversed.err);
     refused(&format!("fit {record} --calibrate-wheel 0,0,1"), &["--body"]);
     refused(&format!("fit {record} --calibrate-wheel 0,0,0 --body {body}"), &["no direction"]);

@@ -154,7 +154,10 @@ fn what_a_fit_cannot_use_or_write_is_refused() {
     let poses = written(&scratch, "poses.csv", "t,q", "t,q_w,q_x,q_y,q_z");
     refused(&format!("fit {poses} --axes x,-y,z"), &["--axes", "attitudes are fitted"]);
     refused(&format!("fit {poses} --rate-unit deg/s"), &["--rate-unit: 'deg/s'", "attitudes are fitted"]);
-    refused(&format!("fit {poses} --skip-rows 0.1"), &["--skip-rows: '0.1'", "every row is read"]);
+    refused(
+        &format!("fit {poses} --skip-rows 0.1"),
+        &["--skip-rows: '0.1'", "every row of attitudes is read"],
+    );
     refused(&format!("fit {rates} --attitude-noise 0.1"), &["--attitude-noise", "rates are fitted"]);
     let flags = [
         "--euler zyx",

@@ -83,7 +83,7 @@ impl CarrierArguments {
             return Err(Error::input("--object-at", "", rule, remedy));
         }
         if let (Some(mass), None, None) = (self.carrier_mass, self.proof_at, self.object_at) {
-            let rule = "goes with the place of a proof body or an object, and none is given";
+            let rule = "goes with the position of a proof body or an object, and none is given";
             let remedy = "give --proof-at or --object-at too, or leave it out";
             return Err(Error::input("--carrier-mass", &mass.to_string(), rule, remedy));
         }
@@ -104,8 +104,8 @@ impl CarrierArguments {
             (Some(_), None) => Err(Error::input(
                 "--object-proof",
                 "",
-                "the proof body is counted from the common centre of mass of carrier and object, which nothing gives",
-                "give place and mass of the object by --object-at",
+                "the position of the proof body counts from the common centre of mass of carrier and object, which is not known",
+                "give position and mass of the object by --object-at",
             )),
             (_, Some((mass, place, _))) => {
                 self.proof(|body, carrier| ProofBody::attached_beside(body, carrier, (mass, place)))
@@ -159,5 +159,5 @@ fn mass(flag: &str, value: f64) -> Result<f64, Error> {
         return Ok(value);
     }
     let rule = "the mass is not positive";
-    Err(Error::input(flag, &value.to_string(), rule, "give the place, then the mass in kg"))
+    Err(Error::input(flag, &value.to_string(), rule, "give the position, then the mass in kg"))
 }

@@ -74,7 +74,7 @@ fn records(
     let given = files.map(|files| !files.is_empty());
     arguments.check_used(given[2] || given[3])?;
     if !given[1] && !given[3] && arguments.proof_body()?.is_some() {
-        let rule = "no record is of it";
+        let rule = "no record has the proof body";
         let remedy = "give --proof or --object-proof too, or leave it out";
         return Err(Error::input("--proof-body", "", rule, remedy));
     }

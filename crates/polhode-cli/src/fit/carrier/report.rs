@@ -31,7 +31,7 @@ pub(super) fn bodies(e: &CarrierEstimate) -> Vec<(&'static str, &'static str, &M
 pub(super) fn sizes(e: &CarrierEstimate) -> Vec<String> {
     let line = |size: &Size| {
         let relative = 100.0 * size.relative;
-        format!("size by the {}: alone to {relative:.2} % (one deviation)", size.source)
+        format!("size by the {} alone: to {relative:.2} % (one standard deviation)", size.source)
     };
     e.sizes.iter().map(line).collect()
 }
@@ -40,7 +40,7 @@ pub(super) fn sizes(e: &CarrierEstimate) -> Vec<String> {
 pub(super) fn agreement(e: &CarrierEstimate) -> String {
     let (chi2, dof) = (e.agreement.chi2, e.agreement.dof);
     match dof {
-        0 => "agreement: nothing that the records could contradict".into(),
+        0 => "agreement of the records: not tested, as there are no degrees of freedom".into(),
         _ => format!("agreement of the records: chi^2 {chi2:.1} of {dof} degrees of freedom"),
     }
 }

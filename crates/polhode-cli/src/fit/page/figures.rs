@@ -31,7 +31,7 @@ pub(super) fn motions(
     };
     let mut parts = vec![Block::Heading(heading.into())];
     if differenced {
-        let about = "Dots: slopes of parabolas through neighbouring attitudes, a look at the motion only: the fit uses the attitudes.";
+        let about = "Dots: slopes of parabolas through neighbouring attitudes, for display only; the fit uses the attitudes.";
         parts.push(Block::Paragraph(about.into()));
     }
     if motion.len() > DRAWN {
@@ -146,7 +146,8 @@ fn interval<'a>(segments: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
 
 /// |J ω| and ω·J ω of the samples over their means.
 pub(super) fn invariants(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Result<Block, Error> {
-    let caption = "Angular momentum |Jω| and twice the energy, 2T = ω·Jω, which a free body keeps.";
+    let caption =
+        "Angular momentum |Jω| and twice the energy, 2T = ω·Jω, which are constant for a free body.";
     Ok(Block::Figure(kept(e, motion, record).svg()?, caption.into()))
 }
 
@@ -200,7 +201,7 @@ pub(super) fn readings(record: &Record) -> Result<Vec<Block>, Error> {
     figure.series = vec![Curve::new("|ω|", points).dots()];
     parts.push(Block::Figure(
         figure.svg()?,
-        "Size of the rate: jumps are blows or catches, a fall is drag.".into(),
+        "Size of the rate: jumps are blows or catches, a slow decrease is drag.".into(),
     ));
     Ok(parts)
 }

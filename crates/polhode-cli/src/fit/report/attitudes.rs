@@ -21,15 +21,15 @@ pub(in super::super) fn sentences(e: &Estimate, read: Option<&Read>) -> Vec<Stri
     let told = match (read.stated, of.direction_gain) {
         (Some(_), _) => "as stated".into(),
         (None, Some(gain)) if gain.is_finite() => {
-            format!("told by the motion: log-likelihood higher by {gain:.0} than that of the inverse")
+            format!("found from the motion: log-likelihood higher by {gain:.0} than that of the inverse")
         }
-        _ => "told by the motion: no free motion follows the inverse".into(),
+        _ => "found from the motion: no free motion follows the inverse".into(),
     };
     let degrees = of.noise_sigma.to_degrees();
-    let source = if of.noise_is_given { "as given" } else { "as the motion leaves it" };
+    let source = if of.noise_is_given { "as stated" } else { "from the residuals" };
     let near = of
         .local_noise
-        .map_or(String::new(), |noise| format!("; neighbouring attitudes alone say {noise:.3e} rad"));
+        .map_or(String::new(), |noise| format!("; neighbouring attitudes alone show {noise:.3e} rad"));
     let mut lines = vec![
         format!("attitudes read as {}, {words} ({told})", read.form),
         format!(
@@ -38,18 +38,18 @@ pub(in super::super) fn sentences(e: &Estimate, read: Option<&Read>) -> Vec<Stri
         ),
     ];
     if of.noise_is_given {
-        lines.push(format!("the motion leaves {:.3e} rad", of.residual));
+        lines.push(format!("rms of the residuals of a component {:.3e} rad", of.residual));
     }
     lines.push(format!("largest turn from one attitude to the next {:.3} rad", of.largest_turn));
     if let Some(alignment) = of.alignment {
         let turn = Quat::from(alignment.turn).logarithm();
         let parts = [0, 1, 2].map(|k| with_error(turn[k].to_degrees(), alignment.sigma[k].to_degrees()));
         lines.push(format!(
-            "axes of the rates from those of the attitudes by the rotation vector ({}) deg; the tensor is in the axes of the rates",
+            "the axes of the rates are turned from those of the attitudes by the rotation vector ({}) deg; the tensor is in the axes of the rates",
             parts.join(", ")
         ));
         lines.push(format!(
-            "from the first sample to the last they move against each other by {:.1e} rad (gain of log-likelihood {:.1})",
+            "from the first sample to the last they turn against each other by {:.1e} rad (gain of log-likelihood {:.1})",
             alignment.moving, alignment.moving_gain
         ));
     }

@@ -103,24 +103,24 @@ impl Facts {
     }
 
     pub(super) fn unsettled(axes: &[AverageAxis]) -> Self {
-        let open = "the ratios of the moments, and the axes otherwise: the iteration did not converge";
+        let open = "the ratios of the moments and all other axes: the iteration did not converge";
         let known = axes.iter().map(AverageAxis::to_string).collect();
         Facts { known, ..Facts::nothing(open, "record longer, with a larger wobble") }
     }
 
     pub(super) fn not_free() -> Self {
         let open = "the tensor: nowhere in the record does the body rotate freely";
-        Facts::nothing(open, "throw the body, so that nothing but air acts on it")
+        Facts::nothing(open, "throw the body, so that only the air acts on it")
     }
 
     pub(super) fn direction_open() -> Self {
         let open =
-            "the tensor: the motion does not tell whether the attitudes are body to space or space to body";
-        Facts::nothing(open, "none: state the direction, which no motion of an axisymmetric body tells")
+            "the tensor: the motion does not show whether the attitudes are body to space or space to body";
+        Facts::nothing(open, "none: state the direction, which no motion of an axisymmetric body shows")
     }
 
     pub(super) fn several() -> Self {
-        let open = "the ratios of the moments, and other axes: very different bodies follow the samples nearly as well";
+        let open = "the ratios of the moments and all other axes: bodies with very different moments follow the samples nearly as well";
         Facts::nothing(open, "throw the body with a larger wobble, or record longer")
     }
 
@@ -138,19 +138,22 @@ impl Facts {
 
     pub(super) fn untold_sensor() -> Self {
         let open = "the tensor together with the errors of the sensor that are to be fitted";
-        Facts::nothing(open, "record longer; or fit fewer errors of the sensor, or with smaller deviations")
+        Facts::nothing(
+            open,
+            "record longer; or fit fewer errors of the sensor, or give them smaller standard deviations",
+        )
     }
 
     pub(super) fn driven() -> Self {
         let open = "the tensor: torques drive the body";
-        Facts::nothing(open, "throw the body, or cut out of the record what is free")
+        Facts::nothing(open, "throw the body, or fit only the part of the record in which it is free")
     }
 
     pub(super) fn contradicted() -> Self {
-        let open = "the tensor: momenta of wheels and torques contradict the rates";
+        let open = "the tensor: wheel momenta and torques contradict the rates";
         Facts::nothing(
             open,
-            "with the wheels at rest and without these torques: it tells whether something else drives the body",
+            "with the wheels at rest and without these torques: it shows whether something else drives the body",
         )
     }
 
@@ -178,7 +181,7 @@ impl Facts {
             })),
             Format::Csv => {
                 let columns = vec![
-                    Column::new("kind", "", "known, undetermined, or the record that would tell more"),
+                    Column::new("kind", "", "known, undetermined, or next record"),
                     Column::new("fact", "", "in words"),
                 ];
                 let mut table = Table::new("facts", "What the record tells.", columns);
@@ -307,10 +310,12 @@ pub(super) fn mirror(e: &Estimate) -> Option<String> {
 pub(super) fn unseen(e: &Estimate) -> String {
     match e.unseen_change {
         Some([a, b, c]) => format!(
-            "a body that changes midway may go unseen: I1 by up to {a:.1e}, I2 by {b:.1e} and I3 by {c:.1e} of the trace; near an end of the \
-             record by more"
+            "a change of the tensor midway may go unseen: of I1 up to {a:.1e}, I2 {b:.1e}, I3 {c:.1e} of the trace; near an end of the record \
+             also larger ones"
         ),
-        None => "halves of the record are not compared: a body that changes midway shows only in what its motion leaves".into(),
+        None => {
+            "parts of the record are not compared: a change of the tensor shows only in the residuals".into()
+        }
     }
 }
 
@@ -361,7 +366,7 @@ pub(super) fn about_gains(e: &Estimate) -> Vec<String> {
     let of_torques = e.models.iter().map(|one| one.gain);
     let mut gains = of_torques.chain(e.reading_errors.iter().map(|one| one.gain));
     let noise = "*: with torque noise, which may take the place of a torque and counts as a coefficient";
-    let far = "gain -: refuted at the torque noise of the answer, by more than its first order tells";
+    let far = "gain -: below -1000, where the first-order estimate does not hold: refuted at the torque noise of the answer";
     let is_far = gains.any(|gain| gain < LEAST_GAIN);
     [(noise_differs(e), noise), (is_far, far)]
         .into_iter()
@@ -376,12 +381,12 @@ pub(super) const MODELS: [&str; 7] = ["torque", "gain", "share", "I1/I3", "I2/I3
 /// What they say, in words.
 pub(super) fn about_models(e: &Estimate) -> String {
     let deviations = match e.torque.is_chosen {
-        true => "the answer's deviations include their spread, by their shares",
-        false => "the answer's deviations are those of the torque that was asked for",
+        true => "the answer's standard deviations include their spread, weighted by share",
+        false => "the answer's standard deviations are those of the torque that was asked for",
     };
     let what = match e.reading_errors.is_empty() {
-        true => "models of the torque, each with its own deviation in brackets",
-        false => "models of the torque, or an error of the record instead, with their deviations",
+        true => "models of the torque, each with its own standard deviation in brackets",
+        false => "models of the torque, or of an error of the record, with standard deviations",
     };
     format!("{what}; {deviations}")
 }

@@ -13,13 +13,13 @@ pub(in crate::fit) struct Segments {
     pub(in crate::fit) rows: Vec<(usize, Vec<String>)>,
 }
 
-const OF_RATES: &str = "noise: rad/s; torque: density of the angular acceleration by torque noise, (rad/s^2)^2 s; I1/I3, I2/I3: of the \
-                        other segments, with their deviations in brackets; shift: how far the tensor moves without the segment, in standard \
-                        deviations";
+const OF_RATES: &str = "noise: rad/s; torque: power spectral density of the angular acceleration by torque noise, (rad/s^2)^2 s; I1/I3, \
+                        I2/I3: of the other segments, with standard deviations in brackets; shift: how far the tensor moves without the \
+                        segment, in standard deviations";
 
-const OF_ATTITUDES: &str = "left: rms of what the motion leaves of a component of the rotation vector, rad; torque: density of the angular \
-                            acceleration by torque noise, (rad/s^2)^2 s; I1/I3, I2/I3: of the other segments, with their deviations in \
-                            brackets; shift: how far the tensor moves without the segment, in standard deviations";
+const OF_ATTITUDES: &str = "left: rms of the residuals of a component of the rotation vector, rad; torque: power spectral density of the \
+                            angular acceleration by torque noise, (rad/s^2)^2 s; I1/I3, I2/I3: of the other segments, with standard \
+                            deviations in brackets; shift: how far the tensor moves without the segment, in standard deviations";
 
 impl Segments {
     pub(in crate::fit) fn of(e: &Estimate) -> Self {

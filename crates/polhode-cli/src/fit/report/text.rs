@@ -83,7 +83,7 @@ fn answer(e: &Estimate) -> Vec<String> {
 }
 
 fn axes(e: &Estimate) -> Vec<String> {
-    let mut lines = vec!["principal axes in sensor axes, and how far they may be turned:".into()];
+    let mut lines = vec!["principal axes in sensor axes; +- is one standard deviation of the turn:".into()];
     let axes = e.axes.to_rotation_matrix();
     for k in 0..3 {
         let v = axes.matrix().column(k);
@@ -252,7 +252,7 @@ fn quality(e: &Estimate) -> Vec<String> {
     lines.extend(drift("|J w|", e.momentum_trend));
     lines.extend(drift("w J w", e.energy_trend));
     lines.extend([format!(
-        "I1 + I2 - I3: {} of the trace, 0 of a flat body",
+        "I1 + I2 - I3: {} of the trace, 0 for a flat body",
         with_error(e.triangle_slack, 2.0 * e.sigma_principal[2])
     )]);
     lines
