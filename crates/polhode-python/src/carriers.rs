@@ -365,7 +365,7 @@ impl Known {
                 Ok(ProofBody::attached_beside(body, *carrier, object))
             }
             (Known::Attached(..), None) => Err(refused(
-                "object_mass, object_at: missing; beside an object the proof body is counted from their common centre of mass",
+                "object_mass, object_at: missing; the position of the proof body counts from the common centre of mass of carrier and object",
             )),
         }
     }

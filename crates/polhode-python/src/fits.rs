@@ -100,7 +100,7 @@ pub(crate) fn fitted(
         }
         Some(_) if wheel.is_some() || applied_torque.is_some() => {
             return Err(refused(
-                "wheel, applied_torque: a fit of attitudes does not reckon with them; leave them out",
+                "wheel, applied_torque: a fit of attitudes does not include them; leave them out",
             ));
         }
         Some(attitude) => Measured::attitudes(t, attitude, order, rates, windows)?,
@@ -151,7 +151,7 @@ pub(crate) fn fitted(
     if let Some(flights) = flights.as_ref().filter(|flights| !flights.whole) {
         warnings.push(format!(
             "the record as a whole is not that of a free body: the fit uses the flights that were found in it, {} of them; windows \
-             names others",
+             selects others",
             flights.list.len()
         ));
         warnings.extend(flights.remark_on_others());
@@ -205,7 +205,7 @@ impl Measured {
         windows: Option<Vec<(f64, f64)>>,
     ) -> PyResult<Self> {
         if t.is_instance_of::<Record>() || t.is_instance_of::<Read>() {
-            return Err(refused("t: times are wanted beside attitudes; give t of what was read"));
+            return Err(refused("t: beside attitudes it must be times; give the t of what was read"));
         }
         let times = Numbers::of("t", t)?.list()?;
         let n = Some(times.len());
