@@ -40,7 +40,7 @@ pub struct ToldComponent {
 
 /// What helps against a noise that is stated and is not that of the readings.
 pub(crate) const UNSTATED: &str =
-    "check its value and its unit, or leave it out: the samples then give the noise";
+    "check its value and its unit, or leave it out, so that the samples give it";
 
 impl From<FitError> for polhode::Error {
     fn from(error: FitError) -> Self {
@@ -440,8 +440,8 @@ pub enum FitError {
     TwoScales,
     /// Test functions that no segment has room for.
     #[error(
-        "test functions of half width {radius} s need a segment of {:.4} s, with room for two of at least {needed} samples each; the longest \
-         lasts {longest} s: give a smaller half width, or record longer", (2.0 + 0.5 / TESTS_PER_RADIUS) * radius
+        "a radius (half width of the test functions) of {radius} s needs a segment of {:.4} s, for two of them with at least {needed} samples \
+         each; the longest lasts {longest} s: give a smaller radius, or record longer", (2.0 + 0.5 / TESTS_PER_RADIUS) * radius
     )]
     Radius {
         /// The radius, s.
@@ -453,8 +453,8 @@ pub enum FitError {
     },
     /// Test functions so short that their equations are nearly as many as the samples.
     #[error(
-        "test functions of half width {radius} s give nearly as many equations as there are samples, so that the covariance of their \
-         noise is singular; give a larger half width"
+        "a radius (half width of the test functions) of {radius} s gives nearly as many equations as there are samples, so that the \
+         covariance of their noise is singular; give a larger radius"
     )]
     Dense {
         /// The radius, s.

@@ -319,7 +319,7 @@ fn unusable_input_is_refused_by_file_line_and_column() {
     refused(2, &format!("fit {record} --at-least 1,0,0,0.3 --at-most 1,0,0,0.3"), &["leave no room"]);
     refused(2, &format!("fit {record} --time-unit ns"), &["times in s read as ns"]);
     refused(2, &format!("fit {record} {record}"), &["the file is given twice"]);
-    refused(2, &format!("fit {record} --radius 10"), &["half width 10 s need a segment of 21.25"]);
+    refused(2, &format!("fit {record} --radius 10"), &["of 10 s needs a segment of 21.25"]);
     let nowhere = run(&format!("fit {record} --residuals /nowhere/r.svg"));
     assert!(nowhere.code == 2 && nowhere.err.contains("--residuals: '/nowhere/r.svg'"), "{}", nowhere.err);
     let before = fs::read_to_string(&record).unwrap();

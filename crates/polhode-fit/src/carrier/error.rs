@@ -81,8 +81,8 @@ pub enum CarrierError {
     /// The proof body changes the motion by no more than the deviation of the records.
     #[error(
         "the proof body is too light. It adds a trace of {trace:.3e} kg m^2; from the two shapes, 1/trace of carrier and proof body is \
-         {inverse:.2e} +- {sigma:.2e} 1/(kg m^2), which is {:.1} standard deviations where {needed} are needed. It is heavy enough for a \
-         trace of both below {bound:.3e} kg m^2. Take one at least {:.1} times as heavy, or of another shape, or record longer", inverse / sigma, needed / (inverse / sigma).max(1.0)
+         {inverse:.2e} +- {sigma:.2e} 1/(kg m^2), which is {:.1} standard deviations where {needed} are needed. It is heavy enough if \
+         the trace of both is below {bound:.3e} kg m^2. Take one at least {:.1} times as heavy, or of another shape, or record longer", inverse / sigma, needed / (inverse / sigma).max(1.0)
     )]
     TooLight {
         /// Trace of what it adds, kg m².
