@@ -6,13 +6,14 @@ use std::path::{Path, PathBuf};
 
 use polhode_files::error::{Error, unexpected};
 use polhode_files::npy::Array;
+use polhode_files::text::visible;
 use polhode_files::{inputs, read, read_own};
 use polhode_pages::output::{MARK, Staging};
 use polhode_pages::table::{Cell, Column, Table};
 
 use super::checksum::Checksum;
 use super::passages::{self, PASSAGES, Passage};
-use super::record::Record;
+use super::record::{Identity, Record};
 use super::shard::Shard;
 use super::work::{ATTITUDES, Failure, Largest, OMEGAS, Shares};
 
@@ -54,6 +55,39 @@ pub(super) fn finished(out: &Path) -> Result<Vec<Finished>, Error> {
 /// The record of results, which the next run writes again.
 pub(super) fn record_of_results(folder: &Path) -> Result<Option<Record>, Error> {
     record(folder, read_own)
+}
+
+/// Refuses to replace a record that is not of the run `identity`, and with it the results that it belongs to.
+pub(super) fn check_replaced(flag: &str, folder: &Path, identity: &Identity) -> Result<(), Error> {
+    let rule = match record_of_results(folder)?.filter(Record::is_results) {
+        Some(record) => match identity.difference(&record.identity) {
+            Some(difference) => format!("holds results of another run: {difference}"),
+            None => return Ok(()),
+        },
+        None if folder.join(MARK).exists() => format!("holds a {MARK} that is not of an ensemble"),
+        None => return Ok(()),
+    };
+    Err(replacing(flag, folder, &rule))
+}
+
+/// Refuses to replace a folder of results that holds what no run of an ensemble wrote.
+pub(super) fn check_alone(folder: &Path) -> Result<(), Error> {
+    let Some(record) = record_of_results(folder)? else { return Ok(()) };
+    let is_own = |name: &str| name == MARK || record.sha256.contains_key(name);
+    let names = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let names = names.map(|entry| entry.file_name().to_string_lossy().into_owned());
+    match names.filter(|name| !is_own(name)).min() {
+        Some(name) => {
+            let rule = format!("holds '{}', which is not of the results there", visible(&name));
+            Err(replacing("--out", folder, &rule))
+        }
+        None => Ok(()),
+    }
+}
+
+pub(super) fn replacing(flag: &str, folder: &Path, rule: &str) -> Error {
+    let remedy = "move it away, or give --replace, and it is replaced";
+    Error::input(flag, &folder.display().to_string(), rule, remedy)
 }
 
 /// The record of a folder, if it has one.

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use polhode_files::error::{Error, unexpected};
-use polhode_files::npy;
+use polhode_files::{inputs, npy};
 use polhode_pages::output::{MARK, Output, unwritable};
 
 use super::checksum::Checksum;
-use super::folder::{ERRORS, Finished, finished, record_of_results};
+use super::folder::{ERRORS, Finished, check_replaced, finished, record_of_results, replacing};
 use super::record::{Identity, Record};
 use super::reduce::{self, reduce};
 use super::results::Results;
@@ -29,6 +29,7 @@ const EXAMPLES: &str = "Examples:
 /// `polhode ensemble --shard K/N` writes its shards to DIR/shards. All shards of one run must be there: with the same specification,
 /// seed, version and number of shards, and with unchanged files (the run.toml beside them has each SHA-256). The results in DIR are
 /// those of the run without shards, to the last bit, and their run.toml has the SHA-256 of each. The shards may then be removed.
+/// Files of another run, or of none, that stand in DIR under these names are replaced only with --replace.
 /// Exit code 1: every member failed.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
@@ -36,6 +37,9 @@ pub(crate) struct Gather {
     /// Folder that --out of `polhode ensemble` named
     #[arg(value_name = "DIR")]
     folder: PathBuf,
+    /// Replace the results of another run in DIR
+    #[arg(long)]
+    replace: bool,
     /// Threads [default: as many as there are cores]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     threads: Option<u16>,
@@ -46,6 +50,9 @@ impl Gather {
         let threads = threads_of(self.threads);
         let shards = finished(&self.folder)?;
         let identity = self.check(&shards)?;
+        if !self.replace {
+            check_replaced("gather", &self.folder, &identity)?;
+        }
         let needed = reduce::memory(identity.members, threads, !identity.observer.is_empty());
         if let Some(free) = memory::free().filter(|free| needed > *free) {
             let rule = format!(
@@ -95,6 +102,7 @@ impl Gather {
             let sum = Checksum::of(content.as_bytes()).map_err(unexpected)?;
             sums.insert(name, sum);
         }
+        self.check_unrecorded(&sums)?;
         write(MARK, &results.record(sums)?)?;
         // without its record a folder of results is not whole; the new one comes last
         let other = record_of_results(&self.folder)?.filter(Record::is_results);
@@ -122,6 +130,24 @@ impl Gather {
             output.finish()?;
         }
         said(&results, &shares, &identity, &self.folder)
+    }
+
+    /// Refuses to replace a file that no record belongs to; what a gathering that was killed has left is the same as that which replaces it.
+    fn check_unrecorded(&self, sums: &BTreeMap<String, String>) -> Result<(), Error> {
+        if self.replace || self.folder.join(MARK).exists() {
+            return Ok(());
+        }
+        for (name, sum) in sums {
+            let found = inputs::open_own(&self.folder.join(name)).and_then(Checksum::of);
+            let is_free = match &found {
+                Ok(found) => found == sum,
+                Err(error) => error.kind() == ErrorKind::NotFound,
+            };
+            if !is_free {
+                return Err(replacing("gather", &self.folder, &format!("holds a {name} of no ensemble")));
+            }
+        }
+        Ok(())
     }
 
     /// The array of all members, from those of the shards, and its checksum.

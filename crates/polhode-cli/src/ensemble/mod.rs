@@ -75,6 +75,8 @@ Examples:
 /// also passages.csv, the time at which it first happens to each member. For free bodies in exact motion the spread to first order is
 /// printed beside that of the members.
 ///
+/// A folder with the results of another run, or with anything beside those of this one, is replaced only with --replace.
+///
 /// With --shard K/N, in a Slurm array or under an MPI launcher, only part K of N of the members is run. Processes that srun starts
 /// side by side need --shard. The results of a part, a shard, go to DIR/shards, and `polhode gather DIR` joins all shards. A shard
 /// that is finished is not run again. Exit code 1: every member failed.
@@ -87,6 +89,9 @@ pub(crate) struct Ensemble {
     /// Folder of the results
     #[arg(long, value_name = "DIR")]
     out: PathBuf,
+    /// Run, and replace the results that DIR holds, with all else in that folder
+    #[arg(long)]
+    replace: bool,
     /// Part K of N of the members, K from 1 [default: what the launcher says, else all members]
     #[arg(long, value_name = "K/N")]
     shard: Option<Shard>,
@@ -138,6 +143,12 @@ impl Ensemble {
         let shard = self.share()?;
         match shard {
             None => self.whole(&spec),
+            Some(shard) if self.replace => Err(Error::input(
+                "--replace",
+                "",
+                &format!("given with shard {shard}, which replaces nothing"),
+                "leave it out here, and give it to `polhode gather`",
+            )),
             Some(shard) => self.part(&spec, shard),
         }
     }
@@ -174,13 +185,20 @@ impl Ensemble {
                 "gather them with `polhode gather`, or name another folder",
             ));
         }
-        if let Some(failed) = gather::has_results(&self.out, &identity)? {
-            let of_failed = match failed {
-                0 => String::new(),
-                _ => format!(", in which {failed} of {} members failed", identity.members),
-            };
-            tell("note", &format!("{} holds the results of this run already{of_failed}", self.out.display()));
-            return check_left(failed, identity.members, &self.out);
+        if !self.replace {
+            if let Some(failed) = gather::has_results(&self.out, &identity)? {
+                let of_failed = match failed {
+                    0 => String::new(),
+                    _ => format!(", in which {failed} of {} members failed", identity.members),
+                };
+                tell(
+                    "note",
+                    &format!("{} holds the results of this run already{of_failed}", self.out.display()),
+                );
+                return check_left(failed, identity.members, &self.out);
+            }
+            folder::check_replaced("--out", &self.out, &identity)?;
+            folder::check_alone(&self.out)?;
         }
         self.check_room(spec, Shard::WHOLE)?;
         let means = self.means();

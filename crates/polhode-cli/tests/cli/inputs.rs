@@ -114,9 +114,9 @@ fn a_folder_of_results_that_holds_an_input_is_not_replaced() {
     scratch.file("out/spec.toml", EXACT.replace("seed = 7", "seed = 8"));
     symlink("out", scratch.0.join("link")).unwrap();
     for (line, input) in [
-        ("ensemble listed.toml --out out", "out/members.csv"),
-        ("ensemble listed.toml --out link", "out/members.csv"),
-        ("ensemble out/spec.toml --out out", "out/spec.toml"),
+        ("ensemble listed.toml --out out --replace", "out/members.csv"),
+        ("ensemble listed.toml --out link --replace", "out/members.csv"),
+        ("ensemble out/spec.toml --out out --replace", "out/spec.toml"),
     ] {
         let answer = polhode(&words(line), &scratch.0);
         assert_eq!(answer.code, 2, "{line}: {}", answer.err);
@@ -127,6 +127,7 @@ fn a_folder_of_results_that_holds_an_input_is_not_replaced() {
     let other = "ensemble spec.toml --out other";
     polhode(&words(other), &scratch.0).silent(other);
     scratch.file("spec.toml", EXACT.replace("seed = 7", "seed = 9"));
+    let other = "ensemble spec.toml --out other --replace";
     polhode(&words(other), &scratch.0).silent(other);
 }
 

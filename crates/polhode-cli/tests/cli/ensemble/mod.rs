@@ -189,7 +189,7 @@ fn every_member_moves_as_propagate_moves_it_alone() {
             "[spread]\nmembers_file = \"candidates.csv\"\n[run]\nmethod = {method}\ntimes = [1, \"3s\", 70]\n"
         );
         scratch.file("spec.toml", spec);
-        done("ensemble spec.toml --out out", &scratch);
+        done("ensemble spec.toml --out out --replace", &scratch);
         let out = scratch.0.join("out");
         let (shape, attitudes) = array(&out.join("attitudes.npy"));
         assert_eq!(shape, "(3, 4, 4)");

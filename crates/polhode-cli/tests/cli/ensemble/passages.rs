@@ -28,7 +28,7 @@ fn every_member_passes_when_it_does_alone() {
             "[spread]\nmembers_file = \"bodies.csv\"\n[run]\nmethod = {method}\nstart_time = 3\ntimes = [3, 43]\n"
         );
         scratch.file("spec.toml", watching(&spec, CONE));
-        let answer = polhode(&words("ensemble spec.toml --out out"), &scratch.0);
+        let answer = polhode(&words("ensemble spec.toml --out out --replace"), &scratch.0);
         assert_eq!(answer.code, 0, "{}", answer.err);
         // the bound of the closed form excludes that a cone is missed
         assert_eq!(answer.err.contains("may be missed"), !flags.is_empty(), "{}", answer.err);

@@ -335,6 +335,65 @@ fn a_byte_that_was_changed_in_results_is_found() {
     assert!(contents(&out) == before);
 }
 
+/// Hours of work, and notes beside them, are replaced only where that is asked for.
+#[test]
+fn results_of_another_run_are_replaced_only_on_demand() {
+    let scratch = Scratch::new("ensemble-replace");
+    scratch.file("spec.toml", EXACT);
+    scratch.file("other.toml", EXACT.replace("seed = 7", "seed = 8"));
+    done("ensemble spec.toml --out out", &scratch);
+    let out = scratch.0.join("out");
+    let before = contents(&out);
+    let expect = |line: &str, says: &[&str]| {
+        let told = refusal(&scratch, line);
+        for part in says {
+            assert!(told.contains(part), "'{part}' is not in {told}");
+        }
+    };
+    let another = "'out': holds results of another run: of the specification with hash ";
+    expect("ensemble other.toml --out out", &[another, "or give --replace"]);
+    assert!(contents(&out) == before);
+    // beside results that have lost a file and would be written again
+    fs::remove_file(out.join("summary.csv")).unwrap();
+    scratch.file("out/notes.txt", "mine");
+    expect("ensemble spec.toml --out out", &["holds 'notes.txt', which is not of the results there"]);
+    assert_eq!(fs::read(out.join("notes.txt")).unwrap(), b"mine");
+    done("ensemble other.toml --out out --replace", &scratch);
+    done("ensemble other.toml --out fresh", &scratch);
+    assert!(contents(&out) == contents(&scratch.0.join("fresh")));
+    fs::write(out.join("run.toml"), "mine = true\n").unwrap();
+    expect("ensemble other.toml --out out", &["holds a run.toml that is not of an ensemble"]);
+    let part = "ensemble other.toml --out out --replace --shard 1/2";
+    expect(part, &["--replace: given with shard 1/2, which replaces nothing"]);
+}
+
+/// A file of no record is replaced on demand, and silently only by the same bytes, as after a gathering that was killed.
+#[test]
+fn gathering_replaces_a_file_of_nobody_only_on_demand() {
+    let scratch = shards("ensemble-gather-replace");
+    let out = scratch.0.join("out");
+    for name in ["summary.csv", "run.toml"] {
+        scratch.file(&format!("out/{name}"), "mine = true\n");
+        let told = refusal(&scratch, "gather out");
+        assert!(told.contains(&format!("holds a {name} ")) && told.contains("--replace"), "{told}");
+        assert_eq!(
+            crate::harness::names(&out),
+            if name < "shards" { [name, "shards"] } else { ["shards", name] }
+        );
+        assert_eq!(fs::read(out.join(name)).unwrap(), b"mine = true\n");
+        fs::remove_file(out.join(name)).unwrap();
+    }
+    scratch.file("out/summary.csv", "mine = true\n");
+    done("gather out --replace", &scratch);
+    done("ensemble spec.toml --out whole", &scratch);
+    assert!(contents(&out) == contents(&scratch.0.join("whole")));
+    for name in ["run.toml", "summary.csv"] {
+        fs::remove_file(out.join(name)).unwrap();
+        done("gather out", &scratch);
+        assert!(contents(&out) == contents(&scratch.0.join("whole")));
+    }
+}
+
 #[test]
 fn a_byte_that_was_changed_in_a_shard_is_found_and_nothing_is_written() {
     let scratch = shards("ensemble-bytes");

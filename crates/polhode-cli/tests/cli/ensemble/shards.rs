@@ -3,7 +3,7 @@
 use std::fs;
 use std::process::Command;
 
-use super::refusals::sha256;
+use super::refusals::{refusal, sha256};
 use super::{EXACT, STEPPED, contents, done};
 use crate::harness::{Scratch, names, polhode, words};
 
@@ -151,7 +151,11 @@ fn gathering_leaves_no_file_of_other_results_beside_its_own() {
     for k in [1, 2] {
         done(&format!("ensemble one.toml --out out --shard {k}/2"), &scratch);
     }
-    done("gather out", &scratch);
+    let before = contents(&scratch.0.join("out"));
+    let told = refusal(&scratch, "gather out");
+    assert!(told.contains("holds results of another run: ") && told.contains("--replace"), "{told}");
+    assert!(contents(&scratch.0.join("out")) == before);
+    done("gather out --replace", &scratch);
     assert_eq!(fs::read(scratch.0.join("out/notes.txt")).unwrap(), b"mine");
     fs::remove_file(scratch.0.join("out/notes.txt")).unwrap();
     done("ensemble one.toml --out whole", &scratch);
