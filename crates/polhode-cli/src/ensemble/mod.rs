@@ -79,7 +79,7 @@ Examples:
 ///
 /// With --shard K/N, in a Slurm array or under an MPI launcher, only part K of N of the members is run. Processes that srun starts
 /// side by side need --shard. The results of a part, a shard, go to DIR/shards, and `polhode gather DIR` joins all shards. A shard
-/// that is finished is not run again. Exit code 1: every member failed.
+/// that is finished is not run again. Exit code 1: every member failed; with shards `gather` has it.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = AFTER_HELP)]
 pub(crate) struct Ensemble {
@@ -187,10 +187,7 @@ impl Ensemble {
         }
         if !self.replace {
             if let Some(failed) = gather::has_results(&self.out, &identity)? {
-                let of_failed = match failed {
-                    0 => String::new(),
-                    _ => format!(", in which {failed} of {} members failed", identity.members),
-                };
+                let of_failed = of_failed(failed, identity.members);
                 tell(
                     "note",
                     &format!("{} holds the results of this run already{of_failed}", self.out.display()),
@@ -252,7 +249,8 @@ impl Ensemble {
                 ));
             }
             if other.shard == shard {
-                tell("note", &format!("shard {shard} is finished already"));
+                let of_failed = of_failed(other.record.failed, other.members());
+                tell("note", &format!("shard {shard} is finished already{of_failed}"));
                 return Ok(());
             }
         }
@@ -354,7 +352,12 @@ fn said(results: &Results, shares: &Shares, identity: &Identity, out: &Path) -> 
     check_left(shares.failures.len() as u64, members, out)
 }
 
-/// Fails where no member came to the end.
+fn of_failed(failed: u64, members: u64) -> String {
+    if failed == 0 { String::new() } else { format!(", in which {failed} of {members} members failed") }
+}
+
+/// Fails where no member came to the end; of a shard it is left to `gather`, as a launcher would end the other shards, in which members may
+/// be left.
 fn check_left(failed: u64, members: u64, out: &Path) -> Result<(), Error> {
     if failed < members {
         return Ok(());

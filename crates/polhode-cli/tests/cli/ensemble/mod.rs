@@ -337,6 +337,15 @@ fn a_run_of_which_every_member_fails_is_no_success() {
         }
     }
     assert_eq!(column(&scratch.0.join("out"), "summary.csv", "members"), [2.0, 0.0]);
+    // a launcher would end the other shards by the status of one, so that they leave it to the gathering
+    for (k, says) in
+        [(1, "1 of 1 members failed"), (2, "1 of 1 members failed"), (1, "already, in which 1 of 1")]
+    {
+        let answer = polhode(&words(&format!("ensemble spec.toml --out parts --shard {k}/2")), &scratch.0);
+        assert!(answer.code == 0 && answer.err.contains(says), "{}", answer.err);
+    }
+    let answer = polhode(&words("gather parts"), &scratch.0);
+    assert!(answer.code == 1 && answer.err.contains("every member failed"), "{}", answer.err);
 }
 
 #[test]
