@@ -60,6 +60,19 @@ pub(crate) fn attitudes(
     Ok((rows, reading))
 }
 
+/// What a file holds beside its attitudes where these alone are used, in words; `None` where nothing is.
+pub(crate) fn beside_attitudes(found: &FoundTrajectory) -> Option<String> {
+    let has = |of: fn(&Trajectory) -> bool| found.bodies.iter().any(|(_, rows)| of(rows));
+    let unused = |is_there: bool, what: &str| is_there.then(|| format!("its {what} are not used"));
+    let beside = [
+        found.remark(),
+        unused(has(|rows| rows.rates.is_some()), "angular velocities"),
+        unused(has(|rows| rows.momentum.is_some()), "angular momenta"),
+    ];
+    let beside: Vec<String> = beside.into_iter().flatten().collect();
+    (!beside.is_empty()).then(|| beside.join("; "))
+}
+
 /// By how many seconds the times that are read as `own` are later on the clock of the `record`, where they count from a moment of their
 /// own. `refused`: the refusal by a rule, and what to do.
 ///

@@ -11,7 +11,7 @@ use polhode_files::text::{rounded, visible};
 use polhode_files::trajectory::read;
 use polhode_files::{ReadAs, ReadOptions};
 
-use crate::reference::{attitudes, shift};
+use crate::reference::{attitudes, beside_attitudes, shift};
 
 /// Times agree within this share of the mean interval of the reference.
 const SAME_TIME: f64 = 1e-6;
@@ -57,7 +57,7 @@ impl Reference {
         let found = read(path, &ReadOptions::default())?;
         let name = visible(&path.display().to_string()).into_owned();
         let refused = |rule: &str, remedy: &str| Error::input("--against", &name, rule, remedy);
-        let (read_as, remark) = (found.read_as.clone(), found.remark());
+        let (read_as, beside) = (found.read_as.clone(), beside_attitudes(&found));
         let (rows, reading) = attitudes(found, &name, refused)?;
         let off = |q: &[f64; 4]| (q.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs();
         let resolution = match &rows.attitude {
@@ -65,8 +65,8 @@ impl Reference {
             // of others it is not known
             _ => f64::INFINITY,
         };
-        if let Some(remark) = remark {
-            warn(&format!("{name}: {remark}"));
+        if let Some(beside) = beside {
+            warn(&format!("{name}: {beside}"));
         }
         Ok(Self {
             name,

@@ -14,9 +14,13 @@ use polhode_pages::table::{Cell, Column, RowWriter, Table};
 use super::Propagate;
 use super::columns::{Columns, Reading};
 use crate::flags::times::regular;
+use crate::reference::beside_attitudes;
 
 /// Jumps of the angular velocity below this share of it are rounding.
 const SMOOTH: f64 = 1e-6;
+
+/// Beyond this share they are no noise of attitudes between which the motion is worth having.
+const BROKEN: f64 = 0.1;
 
 impl Propagate {
     /// Writes a row every DT from the first attitude of `file` to the last.
@@ -68,9 +72,12 @@ impl Propagate {
             &format!("spherical linear interpolation is off by up to {worst:.1e} rad at these times"),
         );
         let jump = between.largest_jump();
-        if jump > SMOOTH * fastest {
-            let rule = "the angular velocity jumps by up to";
-            warn(&format!("these are not attitudes of one free motion: {rule} {jump:.1e} rad/s at them"));
+        let told = format!(
+            "these are not attitudes of one free motion: the angular velocity jumps by up to {jump:.1e} rad/s at them"
+        );
+        let is_broken = jump > BROKEN * fastest;
+        if jump > SMOOTH * fastest && !is_broken {
+            warn(&told);
         }
         if !between.pieces().iter().all(|piece| piece.complete) {
             tell(
@@ -78,7 +85,7 @@ impl Propagate {
                 "between some attitudes the search for motions may have missed some; --turns sets how far it looks",
             );
         }
-        Ok(())
+        if is_broken { Err(Error::Failed(format!("--through: {told}"))) } else { Ok(()) }
     }
 }
 
@@ -101,7 +108,7 @@ fn read(file: &Path, has_epoch: bool) -> Result<Vec<(f64, UnitQuaternion<f64>)>,
         let rule = format!("the times of {name} are {times}, and t counts from the first of them");
         return Err(Error::input("--epoch", "", &rule, "leave it out"));
     }
-    let unread = found.remark();
+    let beside = beside_attitudes(&found);
     let mut bodies = found.bodies;
     let (1, Some((_, rows))) = (bodies.len(), bodies.pop()) else {
         return refused("has several bodies", "name a file of one body");
@@ -118,8 +125,8 @@ fn read(file: &Path, has_epoch: bool) -> Result<Vec<(f64, UnitQuaternion<f64>)>,
         Some(if is_inverse { unit.inverse() } else { unit })
     };
     let all: Option<Vec<_>> = rows.times.iter().zip(attitudes).map(|(t, q)| Some((*t, unit(q)?))).collect();
-    if let Some(unread) = unread {
-        warn(&format!("{name}: {unread}"));
+    if let Some(beside) = beside {
+        warn(&format!("{name}: {beside}"));
     }
     match all {
         Some(all) => Ok(all),

@@ -415,6 +415,12 @@ fn what_a_file_holds_and_is_not_read_is_told() {
     let more = scratch.file("more.csv", format!("{head},lift\n{rows}"));
     let answer = run(&format!("attitude {record} --kind rate --against {more}"));
     assert!(answer.code == 0 && answer.err.contains("more.csv: not read: lift"), "{}", answer.err);
+    let rows: String = text.lines().skip(1).map(|row| format!("{row},0,0,9\n")).collect();
+    let head = text.lines().next().unwrap();
+    let rates = scratch.file("both.csv", format!("{head},omega_x,omega_y,omega_z\n{rows}"));
+    let answer = run(&format!("attitude {record} --kind rate --against {rates}"));
+    let says = "both.csv: its angular velocities are not used";
+    assert!(answer.code == 0 && answer.err.contains(says), "{}", answer.err);
 }
 
 #[test]

@@ -35,9 +35,10 @@ fn rows_between_attitudes_are_those_of_the_motion_itself() {
 fn what_of_a_file_is_not_used_is_told_and_dates_go_with_no_other_epoch() {
     let scratch = Scratch::new("through-heard");
     let poses = scratch.0.join("more.csv").display().to_string();
-    output(&format!("{BODY} --omega 0.4,1,-0.3 --until 4 --every 2 --fields t,q,energy --out {poses}"));
+    output(&format!("{BODY} --omega 0.4,1,-0.3 --until 4 --every 2 --fields t,q,omega,energy --out {poses}"));
     let answer = run(&format!("{BODY} --through {poses} --every 0.5"));
-    assert!(answer.code == 0 && answer.err.contains("more.csv: not read: energy"), "{answer:?}");
+    let says = "more.csv: not read: energy; its angular velocities are not used";
+    assert!(answer.code == 0 && answer.err.contains(says), "{answer:?}");
     // the motion has the attitudes of the file, and none of the catalogue
     let racket = "propagate --body racket";
     output(&format!("{racket} --omega 0.4,1,-0.3 --until 4 --every 2 --fields t,q --out {poses}"));
@@ -47,6 +48,26 @@ fn what_of_a_file_is_not_used_is_told_and_dates_go_with_no_other_epoch() {
     let stamped = scratch.file("stamp.csv", format!("stamp.secs,stamp.nsecs,q_w,q_x,q_y,q_z\n{rows}"));
     let line = format!("{BODY} --through {stamped} --every 0.5 --epoch 2026-01-01 --fields jd,q");
     refused(&line, &["--epoch: the times of", "are s and ns, and t counts from the first of them"]);
+}
+
+/// Turns by 1, 1 + d and 1 rad about a principal axis, each in 1 s: between them the rates are those numbers, and jump by d at both rows.
+#[test]
+fn attitudes_of_no_free_motion_end_with_exit_code_1() {
+    let scratch = Scratch::new("through-broken");
+    for (jump, code) in [(0.0_f64, 0), (0.05, 0), (0.5, 1)] {
+        let turned = [0.0, 1.0, 2.0 + jump, 3.0 + jump];
+        let rows = turned.iter().enumerate().map(|(t, angle)| {
+            let (sin, cos) = libm::sincos(0.5 * angle);
+            format!("{t},{cos},0,0,{sin}\n")
+        });
+        let poses = scratch.file("poses.csv", format!("t,q_w,q_x,q_y,q_z\n{}", rows.collect::<String>()));
+        let answer = run(&format!("{BODY} --through {poses} --every 0.5 --fields t,omega --format csv"));
+        assert_eq!((answer.code, answer.out.lines().count()), (code, 8), "{jump}: {}", answer.err);
+        let says = format!("the angular velocity jumps by up to {jump:.1e} rad/s at them");
+        assert_eq!(answer.err.contains(&says), jump > 0.0, "{jump}: {}", answer.err);
+        let word = if code == 1 { "error: --through: these are not" } else { "warning: these are not" };
+        assert_eq!(answer.err.contains(word), jump > 0.0, "{jump}: {}", answer.err);
+    }
 }
 
 #[test]
