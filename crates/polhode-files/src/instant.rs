@@ -20,12 +20,17 @@ fn with_unit(text: &str) -> Option<(&str, &str)> {
     (digits.len() < text.len() && is_number()).then(|| (digits.trim_end(), &text[digits.len()..]))
 }
 
-/// A number; an integer that is no double would be another one, as nanoseconds since 1970.
-fn count(text: &str) -> Result<f64, String> {
-    let value = number(text)?;
+/// Whether `text` is an integer and the double nearest to it, `value`, another one, as with nanoseconds since 1970.
+pub(crate) fn is_other_integer(text: &str, value: f64) -> bool {
     let digits = text.strip_prefix(['+', '-']).unwrap_or(text).trim_start_matches('0');
     let is_whole = digits.bytes().all(|digit| digit.is_ascii_digit());
-    if is_whole && value.abs() >= WHOLE && format!("{:.0}", value.abs()) != digits {
+    is_whole && value.abs() >= WHOLE && format!("{:.0}", value.abs()) != digits
+}
+
+/// A number; an integer that is no double would be another one.
+fn count(text: &str) -> Result<f64, String> {
+    let value = number(text)?;
+    if is_other_integer(text, value) {
         return Err(format!(
             "'{text}' is no double, and the nearest is {value:e}; count from a later moment"
         ));

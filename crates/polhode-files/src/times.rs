@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use polhode::units::TimeUnit;
 
 use crate::error::{Error, Rule, TableError};
-use crate::instant::{Epoch, is_moment, seconds};
+use crate::instant::{Epoch, is_moment, is_other_integer, seconds};
 use crate::table::{
     ColumnNames, Delimiter, Lines as Text, Name, ReadOptions, Source as Rows, Table, uncommented, width_rule,
 };
@@ -260,6 +260,10 @@ impl Place {
             return Err(refused(rule).with_remedy("give the date of t = 0 by --epoch"));
         }
         match (self.unit, number.parse::<f64>()) {
+            (Some(_), Ok(value)) if value.is_finite() && is_other_integer(&number, value) => {
+                let rule = Rule::Other(format!("is no double, and the nearest is {value:e}"));
+                Err(refused(rule).with_remedy("count from a later moment"))
+            }
             (Some(unit), Ok(value)) if value.is_finite() => match unit.seconds(value) {
                 time if time.is_finite() => Ok(time),
                 _ => {
@@ -494,6 +498,11 @@ mod tests {
                 ", line 1: no column for time; the header has 'time_min'; name the column",
             ),
             ("t (d)\n1e308\n", None, ", line 2, column 1 (t (d)): '1e308': is too long a time for a double"),
+            (
+                "t (ns)\n0\n1700000000000000001\n",
+                None,
+                ", line 3, column 1 (t (ns)): '1700000000000000001': is no double, and the nearest is 1.7e18; count",
+            ),
             ("t (ticks)\n1\n", None, ", line 1: column 't (ticks)' is in 'ticks'; known units of time"),
             (
                 "jd\n2451545.5\n",

@@ -59,6 +59,7 @@ fn times_that_cannot_be_used_are_refused_by_file_line_and_column() {
     refused(&with(&format!("--times 1,{other}")), &["--times: item 2", "no double", "9.007199254740992e15"]);
     refused(&with(&format!("--until {other} --every 1d")), &["--until: '9007199254740993'", "no double"]);
     refused(&with(&of("h", &format!("{other}\n"))), &["h, line 1", "no double"]);
+    refused(&with(&of("i", &format!("t (ns)\n{other}\n"))), &["i, line 2", "no double", "a later moment"]);
     refused(&with(&of("a", "1\n2\nx\n")), &["a, line 3, column 1 (t): 'x': is not a number"]);
     refused(&with(&of("b", "t,mag\n1,\n,2\n")), &["b, line 3, column 1 (t): a number is missing"]);
     refused(
