@@ -90,7 +90,7 @@ pub(crate) struct Inertia {
     /// Print all that is known of every link of a model, not one row
     #[arg(long)]
     details: bool,
-    /// Write copies of the models with their invalid tensors repaired to this folder
+    /// Write copies of the models with their invalid tensors repaired to this folder; another file of the same name in it is not replaced
     #[arg(long, value_name = "DIR")]
     repair: Option<PathBuf>,
     /// Folder within which the includes of an MJCF model must lie [default: its own]

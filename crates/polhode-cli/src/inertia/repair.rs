@@ -1,6 +1,7 @@
 //! Copies of models in which invalid tensors are replaced, and nothing else.
 
 use std::fmt::Write;
+use std::io::Read;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
@@ -9,6 +10,7 @@ use polhode::inertia::Diagnosis;
 use polhode_files::error::Error;
 use polhode_files::examined::{Examined, Worth, six};
 use polhode_files::given::Writing;
+use polhode_files::inputs;
 use polhode_files::text::{rounded, visible};
 use polhode_pages::output::Output;
 
@@ -21,7 +23,7 @@ const MARGIN: f64 = 1e-6;
 /// Writes a copy of every model to `folder`, and says what was changed.
 ///
 /// # Errors
-/// A folder that holds one of the models; two models of one name; a place that cannot be written.
+/// A folder that holds one of the models, or another file of its name; two models of one name; a place that cannot be written.
 pub(super) fn write(models: &[Model], folder: &Path) -> Result<String, Error> {
     let mut outputs: Vec<(PathBuf, String)> = Vec::new();
     let mut told = String::new();
@@ -39,6 +41,9 @@ pub(super) fn write(models: &[Model], folder: &Path) -> Result<String, Error> {
             return refuse(&format!("two of the models are called '{}'", name.display()));
         }
         let (text, changes) = repaired(model);
+        if is_other(&target, &text) {
+            return refuse(&format!("holds another '{}', which is not overwritten", name.display()));
+        }
         let _ = writeln!(told, "{} -> {}", visible(&model.path), visible(&target.display().to_string()));
         told += &changes;
         outputs.push((target, text));
@@ -62,6 +67,13 @@ pub(super) fn write(models: &[Model], folder: &Path) -> Result<String, Error> {
 /// Whether both names lead to one file that is there.
 fn is_same(a: &Path, b: &Path) -> bool {
     matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
+/// Whether a file stands there that differs from the text; nobody has typed its name.
+fn is_other(target: &Path, text: &str) -> bool {
+    let Ok(mut file) = inputs::open_own(target) else { return false };
+    let mut bytes = Vec::new();
+    file.read_to_end(&mut bytes).is_err() || bytes != text.as_bytes()
 }
 
 /// The text with its invalid tensors replaced, and a line for every invalid link.

@@ -209,6 +209,13 @@ fn a_repaired_copy_differs_by_its_tensors_alone() {
         assert_ne!(again.code, 2, "{again:?}");
         assert!(!again.out.contains("invalid"), "{again:?}");
     }
+    // the same copy again, but never over another file of its name
+    assert_eq!(scratch.run("urdf links.urdf --repair copies").code, 1);
+    scratch.file("copies/links.urdf", "mine");
+    let answer = scratch.run("urdf links.urdf --repair copies");
+    assert_eq!(answer.code, 2, "{answer:?}");
+    assert!(answer.err.contains("holds another 'links.urdf', which is not overwritten"), "{answer:?}");
+    assert_eq!(fs::read(scratch.0.join("copies/links.urdf")).unwrap(), b"mine");
 }
 
 /// Geoms of every kind, defaults, frames, copies and an included file.
