@@ -93,7 +93,7 @@ fn a_link_of_a_model_is_named_behind_a_colon() {
     let scratch = Scratch::new("compose-links");
     let link = |name: &str, xx: f64| {
         format!(
-            "<link name='{name}'><inertial><origin xyz='0 0 1' rpy='0 0 1.5707963267948966'/><mass value='1'/>\
+            "<link name='{name}'><inertial><origin xyz='0 0 1' rpy='0 0 1.5707963267948966'/><mass value='10'/>\
              <inertia ixx='{xx}' iyy='2' izz='2.5' ixy='0' ixz='0' iyz='0'/></inertial></link>"
         )
     };
@@ -152,7 +152,7 @@ fn a_model_with_one_body_that_can_be_read_and_one_that_cannot_is_refused_unless_
     let start = "--omega 0.3,1,0.4 --times 0";
     let inertial = |xx: &str| {
         let rest = "ixy='0' ixz='0' iyy='2' iyz='0' izz='2.5'";
-        format!("<inertial><mass value='1'/><inertia ixx='{xx}' {rest}/></inertial>")
+        format!("<inertial><mass value='10'/><inertia ixx='{xx}' {rest}/></inertial>")
     };
     let link = |name: &str, xx: &str| format!("<link name='{name}'>{}</link>", inertial(xx));
     let text = format!("<robot name='r'>{}\n{}</robot>", link("base", "1"), link("arm", "0,02"));
@@ -208,6 +208,25 @@ fn the_catalogue_is_shown_with_its_sources() {
     let list = output("bodies --format table");
     assert!(list.lines().all(|line| line.chars().count() <= 80), "{list}");
     refused("bodies toutati", &["'toutati': no such body", "'toutatis'"]);
+}
+
+/// A box of 40 g whose tensor is in g mm²: no matter is so light.
+#[test]
+fn a_suspicious_tensor_of_a_file_is_told_where_it_is_the_body() {
+    let scratch = Scratch::new("compose-suspicious");
+    let start = "--omega 0.3,1,0.4 --times 0 --fields energy";
+    let link = "<link name='a'><inertial><mass value='0.04'/>\
+                <inertia ixx='4333' iyy='3333' izz='1667' ixy='0' ixz='0' iyz='0'/></inertial></link>";
+    let robot = scratch.file("a.urdf", format!("<robot name='r'>{link}</robot>"));
+    let json = scratch.0.join("a.json").display().to_string();
+    let written = run(&format!("inertia tensor 4333,3333,1667,0,0,0 --mass 0.04 --out {json}"));
+    assert!(written.code == 0 && written.err.contains("g mm^2"), "{}", written.err);
+    for (body, of) in [(&robot, " of 'a'"), (&json, "")] {
+        let answer = run(&format!("propagate --body {body} {start}"));
+        let says = format!("warning: --body: {body}{of}: its tensor is suspicious: implausible density: ");
+        assert!(answer.code == 0 && answer.err.starts_with(&says), "{}", answer.err);
+        assert!(answer.err.contains("; probable cause: in g mm^2, not in kg m^2"), "{}", answer.err);
+    }
 }
 
 /// The file of parts in the help of `inertia` is one.

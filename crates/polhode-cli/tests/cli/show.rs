@@ -271,7 +271,7 @@ fn shapes_come_from_meshes_parts_links_and_else_from_the_inertia() {
 
     let link = |name: &str, visual: &str| {
         format!(
-            "<link name=\"{name}\"><inertial><origin xyz=\"1 0 0\"/><mass value=\"1\"/>\
+            "<link name=\"{name}\"><inertial><origin xyz=\"1 0 0\"/><mass value=\"12\"/>\
              <inertia ixx=\"5\" iyy=\"17\" izz=\"20\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/></inertial>{visual}</link>"
         )
     };

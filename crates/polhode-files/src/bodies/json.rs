@@ -57,6 +57,10 @@ pub(super) fn tensors(flag: &str, path: &Path) -> Result<Vec<Named>, Error> {
         };
         let wheels = wheels.map_err(|error| refused(&error))?;
         let own = warnings(&object).map_err(|error| refused(&error))?;
+        if object["verdict"] == "suspicious" {
+            let trouble = object["trouble"].as_str().unwrap_or("as polhode inertia says");
+            remarks.push(super::doubt(trouble, object["cause"].as_str()));
+        }
         remarks.extend(of_all.iter().chain(&own).map(|warning| format!("the fit warns: {warning}")));
         Ok((name, Matrix3::from_fn(|j, k| entries[j][k]), wheels, remarks))
     });

@@ -12,6 +12,7 @@ use polhode::catalogue;
 use polhode::inertia::Inertia;
 
 use crate::error::{Error, warn};
+use crate::examined::{Examined, Worth};
 use crate::given::Given;
 pub use crate::look::{Look, Piece};
 use crate::read;
@@ -34,7 +35,7 @@ struct Chosen<'t> {
 }
 
 /// The inertia of the body that `text` names, as FILE or FILE:LINK, and the wheels that the file gives it; `None` where there is no such
-/// file. Messages begin with `flag`; what a fit warned of is told again. A mesh has a density of 1 kg/m³.
+/// file. Messages begin with `flag`; what a fit warned of is told again, as is why a tensor is suspicious. A mesh has a density of 1 kg/m³.
 ///
 /// # Errors
 /// A file that cannot be read, that has no such body or several to choose from, or whose tensor no body has.
@@ -165,7 +166,12 @@ fn links(path: &Path, kind: &str, meant: Option<&str>) -> Result<Vec<Named>, Err
     }
     // a frame without a body, and a link that states no tensor, have none to give
     let bodies = links.iter().filter(|link| !link.massless && link.defect.is_none());
-    let remarks = |body: &Given| -> Vec<String> { body.remark.clone().into_iter().collect() };
+    let remarks = |body: &Given| -> Vec<String> {
+        let examined = Examined::link(body.clone(), None);
+        let trouble = examined.trouble().filter(|_| examined.worth() == Worth::Suspicious);
+        let doubt = trouble.map(|trouble| doubt(&trouble, examined.cause().as_deref()));
+        body.remark.clone().into_iter().chain(doubt).collect()
+    };
     let bodies: Vec<Named> =
         bodies.map(|body| (body.name.clone(), tensor(body), Vec::new(), remarks(body))).collect();
     let is_in_question = |link: &&Given| meant.map_or(bodies.len() == 1, |name| link.name == name);
@@ -178,6 +184,13 @@ fn links(path: &Path, kind: &str, meant: Option<&str>) -> Result<Vec<Named>, Err
         }
         (None, _) => Ok(bodies),
     }
+}
+
+/// What is to be known of a tensor that is valid, but suspicious.
+fn doubt(trouble: &str, cause: Option<&str>) -> String {
+    let cause = cause.filter(|cause| *cause != trouble);
+    let cause = cause.map_or(String::new(), |cause| format!("; probable cause: {}", visible(cause)));
+    format!("its tensor is suspicious: {}{cause}", visible(trouble))
 }
 
 fn model(path: &Path) -> Result<String, Error> {
