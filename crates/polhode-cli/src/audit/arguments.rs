@@ -90,8 +90,9 @@ impl ReadingArguments {
         Ok(())
     }
 
-    /// The Euler angles in the order of the sequence that is stated.
-    pub(super) fn order(&self, found: &mut FoundTrajectory) -> Result<(), Error> {
+    /// The Euler angles in the order of the sequence that is stated; says where that of a quaternion is told already.
+    pub(super) fn order(&self, found: &mut FoundTrajectory, name: &str) -> Result<(), Error> {
+        self.attitude.note_order(&found.claims, name);
         self.attitude.order(found)
     }
 

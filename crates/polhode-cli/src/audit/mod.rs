@@ -189,7 +189,7 @@ impl Audit {
         }
         self.choose(&mut found)?;
         self.reading.check_used(&found)?;
-        self.reading.order(&mut found)?;
+        self.reading.order(&mut found, name)?;
         if !found.second_attitude.is_empty() && !self.reading.names_quantities() {
             let rule = format!(
                 "the columns {} hold another attitude, which is not read",

@@ -18,7 +18,7 @@ use polhode_files::error::{Error, tell, unexpected, warn};
 use polhode_files::text::{short, visible};
 use polhode_files::trajectory;
 
-use crate::flags::attitude::check_matrices;
+use crate::flags::attitude::{check_matrices, note_order};
 use crate::flags::table::TableArguments;
 
 /// A smaller share of |ω| along the middle axis is rounding.
@@ -107,6 +107,7 @@ impl Trajectory {
         }
         let mut claims = found.claims;
         // columns that are named w, x, y and z are read by their names
+        note_order(order.is_some(), &claims, &name);
         claims.quaternion = claims.quaternion.or(order);
         let Some((reading, is_of_another_body)) = reading(&columns, claims, body) else {
             return match &columns.attitude {

@@ -132,6 +132,7 @@ impl PoseArguments {
                 has_quaternions |= matches!(rows.attitude, Some(Attitudes::Quaternions(_)));
                 has_angles |= matches!(rows.attitude, Some(Attitudes::Angles(_)));
             }
+            self.convention.note_order(&found.claims, &name);
             self.convention.order(&mut found)?;
             let claims = self.convention.claims(found.claims);
             let [(_, rows)] = &found.bodies[..] else { continue };
@@ -205,6 +206,7 @@ impl PoseArguments {
         let name = visible(&path.display().to_string()).into_owned();
         let refused = |rule: &str, remedy: &str| Error::input(&name, "", rule, remedy);
         let mut found = trajectory::read(path, &reading.table())?;
+        self.convention.note_order(&found.claims, &name);
         self.convention.order(&mut found)?;
         let remark = found.remark();
         let claims = self.convention.claims(found.claims);

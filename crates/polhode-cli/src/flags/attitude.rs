@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 use polhode::audit::{Angles, Attitudes, Convention, Direction, Turns};
 use polhode::rotation::EulerSequence;
 use polhode::units::AngleUnit;
-use polhode_files::error::Error;
+use polhode_files::error::{Error, tell};
 use polhode_files::trajectory::FoundTrajectory;
 
 use super::table::Order;
@@ -77,6 +77,16 @@ pub(crate) fn check_used(flag: Option<(&str, String)>, is_used: bool, what: &str
     Err(Error::input(flag, &value, &rule, "leave it out, or name the columns by --columns"))
 }
 
+/// Says that --quaternion changes nothing where the names of the columns, by which they are read in any order, tell the scalar.
+pub(crate) fn note_order(is_given: bool, of_file: &Convention, name: &str) {
+    if is_given && of_file.quaternion.is_some() {
+        tell(
+            "note",
+            &format!("{name}: --quaternion has no effect, as the names of its columns tell the scalar"),
+        );
+    }
+}
+
 /// How far a rotation matrix may be from one.
 const ORTHOGONAL: f64 = 0.1;
 
@@ -106,6 +116,11 @@ impl AttitudeArguments {
     pub(crate) fn check_forms(&self, has_quaternions: bool, has_angles: bool) -> Result<(), Error> {
         check_used(self.given_of_order(), has_quaternions, "a quaternion")?;
         check_used(self.given_of_angles(), has_angles, "a triple of Euler angles")
+    }
+
+    /// [`note_order`] of a file.
+    pub(crate) fn note_order(&self, of_file: &Convention, name: &str) {
+        note_order(self.quaternion.is_some(), of_file, name);
     }
 
     /// The first flag that is given, and its value.

@@ -41,11 +41,14 @@ fn names_of_quaternions_stand_whatever_their_order_is_said_to_be() {
     for order in ["", "--quaternion xyzw", "--quaternion wxyz"] {
         let answer = run(&format!("audit {file} {BODY} {order} --format json"));
         assert_eq!(answer.code, 0, "{order}: {answer:?}");
+        let says = "xyzw.csv: --quaternion has no effect, as the names of its columns tell the scalar";
+        assert_eq!(answer.err.contains(says), !order.is_empty(), "{order}: {answer:?}");
         let start = "--omega 0.4,1,-0.3 --attitude 1,0.2,0,0 --until 6 --methods rk8 --steps 0.1";
         let line = format!("compare {BODY} {start} --trajectory {file} --format csv {order}");
         let answer = run(&line);
         let row = answer.out.lines().find(|row| row.contains("xyzw.csv")).unwrap();
         assert!(answer.code == 0 && row.contains(",ok"), "{order}: {answer:?}");
+        assert_eq!(answer.err.contains(says), !order.is_empty(), "{order}: {answer:?}");
     }
 }
 
