@@ -385,6 +385,7 @@ mod tests {
             ("angle='Radian'", "angle: 'Radian' is unknown; known: degree, radian"),
             ("inertiafromgeom='yes'", "inertiafromgeom: 'yes' is unknown; known: auto, false, true"),
             ("coordinate='global'", "coordinate: 'global' is not read"),
+            ("balanceinertia='yes'", "balanceinertia: 'yes' is unknown; known: false, true"),
         ] {
             let found = model(settings);
             assert_eq!(found.len(), 2, "{settings}: {found:?}");
@@ -397,6 +398,39 @@ mod tests {
             let found = model(&format!("{known} inertiafromgeom='auto'"));
             assert_eq!(found, [("b".to_string(), String::new())], "{known}");
         }
+    }
+
+    /// As MuJoCo does it: least moments first, then the mean where one moment is still larger than the others together.
+    #[test]
+    fn moments_that_no_body_has_are_balanced_where_that_is_asked_for() {
+        let found = |settings: &str, tensor: &str| {
+            let text = format!(
+                "<mujoco><compiler {settings}/><body name='b'><inertial pos='0 0 0' mass='1' {tensor}/></body></mujoco>"
+            );
+            read(Language::Mjcf, Path::new("model"), &text, None).unwrap().remove(0)
+        };
+        let balanced = "balanceinertia='true'";
+        let slender = "diaginertia='1 3 8'";
+        for (settings, tensor, expected) in [
+            (balanced, slender, [4.0, 4.0, 4.0]),
+            ("balanceinertia='false'", slender, [1.0, 3.0, 8.0]),
+            ("", slender, [1.0, 3.0, 8.0]),
+            (balanced, "diaginertia='1 2 2.5'", [1.0, 2.0, 2.5]),
+            // no moment is negative
+            (balanced, "diaginertia='-1 3 8'", [-1.0, 3.0, 8.0]),
+            ("balanceinertia='true' boundinertia='2.5'", slender, [4.5, 4.5, 4.5]),
+            ("balanceinertia='true' boundinertia='4'", slender, [4.0, 4.0, 8.0]),
+            ("boundinertia='4'", slender, [4.0, 4.0, 8.0]),
+        ] {
+            let given = found(settings, tensor);
+            let diagonal = [0, 1, 2].map(|k| given.tensor[(k, k)]);
+            assert_eq!(diagonal, expected, "{settings} {tensor}");
+            let is_told = given.remark.unwrap_or_default().contains("(balanceinertia)");
+            assert_eq!(is_told, diagonal[0] == diagonal[2], "{settings} {tensor}");
+        }
+        // principal moments 1, 1 and 4
+        let full = found(balanced, "fullinertia='2 2 2 1 1 1'").tensor;
+        assert_eq!((full[(0, 0)], full[(0, 1)]), (2.0, 0.0));
     }
 
     /// Two corners of a cube, of 1/6 m³ each, ten metres apart.

@@ -1,7 +1,7 @@
 //! What `<compiler>` says of masses and angles.
 
 use nalgebra::{Matrix3, Vector3};
-use polhode::inertia::MassProperties;
+use polhode::inertia::{Inertia, InertiaError, MassError, MassProperties};
 
 use super::super::element::Element;
 use super::super::pose::Pose;
@@ -30,6 +30,8 @@ pub(super) struct Compiler {
     pub(super) groups: [f64; 2],
     least_mass: f64,
     least_moment: f64,
+    /// Whether moments that violate the triangle inequality are set to their mean.
+    balances: bool,
     total_mass: Option<f64>,
     /// The row that says why that is not obeyed.
     unscaled: Option<Given>,
@@ -45,6 +47,7 @@ impl Compiler {
             groups: [0.0, 5.0],
             least_mass: 0.0,
             least_moment: 0.0,
+            balances: false,
             total_mass: None,
             unscaled: None,
         };
@@ -65,6 +68,12 @@ impl Compiler {
                 Some("radian") => settings.angle = 1.0,
                 Some("degree") => settings.angle = core::f64::consts::PI / 180.0,
                 Some(other) => defect(unknown("angle", other, "degree, radian")),
+                None => {}
+            }
+            match element.attribute("balanceinertia") {
+                Some("true") => settings.balances = true,
+                Some("false") => settings.balances = false,
+                Some(other) => defect(unknown("balanceinertia", other, "false, true")),
                 None => {}
             }
             if let Some(other) = element.attribute("coordinate").filter(|frame| *frame != "local") {
@@ -102,10 +111,12 @@ impl Compiler {
         Ok(Pose { at, turn: orientation(element, self)? })
     }
 
-    /// Least masses and moments, then the total mass. That needs every body: where one is missing, a row says so.
+    /// Least masses and moments, the mean of moments that no body has, then the total mass. That needs every body: where one is missing, a row
+    /// says so.
     pub(super) fn adjust(&self, bodies: &mut [Given], is_whole: bool) -> Option<Given> {
         for body in bodies.iter_mut().filter(|body| body.defect.is_none()) {
             self.raise(body);
+            self.balance(body);
         }
         let total = self.total_mass.filter(|total| *total > 0.0)?;
         if !is_whole || bodies.iter().any(|body| body.defect.is_some()) {
@@ -138,17 +149,36 @@ impl Compiler {
         if body.tensor == Matrix3::zeros() {
             body.tensor = Matrix3::identity() * least;
         } else {
-            let Ok(known) = MassProperties::new(mass, Vector3::zeros(), body.tensor) else { return };
-            let moments = known.principal_moments();
-            if moments[0] >= least {
+            let (moments, axes) = match MassProperties::new(mass, Vector3::zeros(), body.tensor) {
+                Ok(known) => {
+                    let axes = known.principal_axes().to_rotation_matrix();
+                    (Vector3::from(known.principal_moments()), *axes.matrix())
+                }
+                // raised moments may be those of a body
+                Err(MassError::Inertia(InertiaError::Triangle { .. })) => {
+                    let found = body.tensor.symmetric_eigen();
+                    (found.eigenvalues, found.eigenvectors)
+                }
+                Err(_) => return,
+            };
+            if moments.min() >= least {
                 return;
             }
-            let axes = known.principal_axes().to_rotation_matrix();
-            let raised = Vector3::from(moments.map(|moment| (least - moment).max(0.0)));
-            let more = axes.matrix() * Matrix3::from_diagonal(&raised) * axes.matrix().transpose();
+            let raised = moments.map(|moment| (least - moment).max(0.0));
+            let more = axes * Matrix3::from_diagonal(&raised) * axes.transpose();
             body.tensor += (more + more.transpose()) * 0.5;
         }
         body.writing = None;
         body.add_remark(&format!("moments raised to at least {least} kg m^2 (boundinertia)"));
+    }
+
+    fn balance(&self, body: &mut Given) {
+        let law = match Inertia::from_tensor(body.tensor) {
+            Err(law @ InertiaError::Triangle { .. }) if self.balances => law,
+            _ => return,
+        };
+        body.tensor = Matrix3::identity() * (body.tensor.trace() / 3.0);
+        body.writing = None;
+        body.add_remark(&format!("all moments are set to their mean (balanceinertia), since {law}"));
     }
 }
