@@ -93,7 +93,7 @@ const CASES: [Case; 7] = [
     },
 ];
 
-/// Files that stand beside the trajectories.
+/// Files that stand beside the trajectories; the first tells the folder from others.
 const FILES: [(&str, &str); 3] = [
     ("README.md", include_str!("../../golden/README.md")),
     ("check.py", include_str!("../../golden/check.py")),
@@ -103,24 +103,30 @@ const FILES: [(&str, &str); 3] = [
 /// Writes all of it into `folder`, which is made if need be.
 ///
 /// # Errors
-/// A place that cannot be written.
+/// A place that cannot be written; a folder of another kind with a file of one of these names.
 pub(super) fn write(folder: &Path) -> Result<(), Error> {
     std::fs::create_dir_all(folder).map_err(|reason| {
         let rule = format!("cannot be made: {reason}");
         Error::input("--golden", &folder.display().to_string(), &rule, "name another folder")
     })?;
     let [(readme, ours), ..] = FILES;
-    if let (Ok(found), Some(title)) = (polhode_files::read_own(&folder.join(readme), ""), ours.lines().next())
-        && !found.starts_with(title)
-    {
-        let rule = format!("has a {readme} of another kind");
-        return Err(Error::input("--golden", &folder.display().to_string(), &rule, "name an empty folder"));
+    let found = polhode_files::read_own(&folder.join(readme), "").unwrap_or_default();
+    if ours.lines().next().is_none_or(|title| !found.starts_with(title)) {
+        let trajectories = CASES.iter().map(|case| format!("{}.csv", case.name));
+        let mut names = FILES.iter().map(|(name, _)| (*name).to_owned()).chain(trajectories);
+        if let Some(other) = names.find(|name| folder.join(name).exists()) {
+            let rule = format!("has a {other} of another kind");
+            return Err(Error::input(
+                "--golden",
+                &folder.display().to_string(),
+                &rule,
+                "name an empty folder",
+            ));
+        }
     }
     let put = |name: &str, text: &str| Output::to_file("--golden", &folder.join(name))?.write_whole(text);
-    for case in &CASES {
-        put(&format!("{}.csv", case.name), &trajectory(case)?)?;
-    }
-    FILES.into_iter().try_for_each(|(name, text)| put(name, text))
+    FILES.into_iter().try_for_each(|(name, text)| put(name, text))?;
+    CASES.iter().try_for_each(|case| put(&format!("{}.csv", case.name), &trajectory(case)?))
 }
 
 fn trajectory(case: &Case) -> Result<String, Error> {

@@ -313,6 +313,12 @@ fn what_cannot_be_audited_is_refused_with_file_line_and_column() {
         &["--golden", "README.md of another kind", "empty folder"],
     );
     assert_eq!(fs::read_to_string(own).unwrap(), "# Mine\n");
+    let checks = scratch.0.join("checks");
+    fs::create_dir(&checks).unwrap();
+    fs::write(checks.join("check.py"), "mine").unwrap();
+    refused(&format!("audit --golden {}", checks.display()), &["--golden", "has a check.py of another kind"]);
+    assert_eq!(crate::harness::names(&checks), ["check.py"]);
+    assert_eq!(fs::read(checks.join("check.py")).unwrap(), b"mine");
     for flags in [
         "--report r.html",
         "--figure f.svg",
