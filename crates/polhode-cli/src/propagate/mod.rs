@@ -66,7 +66,7 @@ pub(crate) struct Propagate {
     /// Stop at the first event
     #[arg(long, requires = "events", help_heading = "Events")]
     stop: bool,
-    /// Exact motion through the attitudes of a file (t, q_w, q_x, q_y, q_z; body to space unless the names of its columns say otherwise), from the first to the last with --every between rows, with the error of spherical linear interpolation. Exit code 1: no free motion of this body leads through them, and the angular velocity jumps by more than a tenth
+    /// Exact motion through the attitudes of a file (t, q_w, q_x, q_y, q_z; body to space unless the names of its columns say otherwise), from the first to the last with --every between rows, with the error of spherical linear interpolation. Exit code 1: no free motion of this body leads through them, and between them its angular momentum changes by more than a tenth
     #[arg(long, value_name = "POSES", requires = "every", help_heading = "Through attitudes",
           conflicts_with_all = ["omega", "momentum_body", "momentum_space", "attitude", "angles", "rotation", "frame", "to_frame", "periods", "times", "times_column", "until", "start_time", "events", "method", "step", "tolerance"])]
     through: Option<PathBuf>,

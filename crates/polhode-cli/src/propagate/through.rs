@@ -19,7 +19,7 @@ use crate::reference::beside_attitudes;
 /// Jumps of the angular velocity below this share of it are rounding.
 const SMOOTH: f64 = 1e-6;
 
-/// Beyond this share they are no noise of attitudes between which the motion is worth having.
+/// The momentum in space of a free body stays where it is; by more than this share no noise of attitudes worth having moves it.
 const BROKEN: f64 = 0.1;
 
 impl Propagate {
@@ -75,7 +75,9 @@ impl Propagate {
         let told = format!(
             "these are not attitudes of one free motion: the angular velocity jumps by up to {jump:.1e} rad/s at them"
         );
-        let is_broken = jump > BROKEN * fastest;
+        // of dense rows each jump is small, whatever they add up to
+        let moved = momentum_changes(body, &between, &attitudes);
+        let is_broken = moved > BROKEN;
         if jump > SMOOTH * fastest && !is_broken {
             warn(&told);
         }
@@ -85,8 +87,24 @@ impl Propagate {
                 "between some attitudes the search for motions may have missed some; --turns sets how far it looks",
             );
         }
-        if is_broken { Err(Error::Failed(format!("--through: {told}"))) } else { Ok(()) }
+        if is_broken {
+            let percent = 100.0 * moved;
+            return Err(Error::Failed(format!(
+                "--through: {told}, and the angular momentum in space changes by up to {percent:.0} %"
+            )));
+        }
+        Ok(())
     }
+}
+
+/// By which share of it the momentum in space of a motion between two of the `attitudes` differs from that between the first two.
+fn momentum_changes(body: &Body, between: &Interpolation, attitudes: &[(f64, UnitQuaternion<f64>)]) -> f64 {
+    let tensor = body.inertia().tensor();
+    let momenta =
+        between.pieces().iter().zip(attitudes).map(|(piece, (_, q))| q * (tensor * piece.omega_body));
+    let mut momenta = momenta.peekable();
+    let first = momenta.peek().copied().unwrap_or_default();
+    momenta.map(|momentum| (momentum - first).norm() / first.norm()).fold(0.0, f64::max)
 }
 
 /// Times and attitudes of a file; whether t = 0 has a date.

@@ -50,7 +50,8 @@ fn what_of_a_file_is_not_used_is_told_and_dates_go_with_no_other_epoch() {
     refused(&line, &["--epoch: the times of", "are s and ns, and t counts from the first of them"]);
 }
 
-/// Turns by 1, 1 + d and 1 rad about a principal axis, each in 1 s: between them the rates are those numbers, and jump by d at both rows.
+/// Turns by 1, 1 + d and 1 rad about a principal axis, each in 1 s: between them the rates are those numbers, and jump by d at both rows, and
+/// the momentum changes by the share d.
 #[test]
 fn attitudes_of_no_free_motion_end_with_exit_code_1() {
     let scratch = Scratch::new("through-broken");
@@ -67,7 +68,22 @@ fn attitudes_of_no_free_motion_end_with_exit_code_1() {
         assert_eq!(answer.err.contains(&says), jump > 0.0, "{jump}: {}", answer.err);
         let word = if code == 1 { "error: --through: these are not" } else { "warning: these are not" };
         assert_eq!(answer.err.contains(word), jump > 0.0, "{jump}: {}", answer.err);
+        let says = "and the angular momentum in space changes by up to 50 %";
+        assert_eq!(answer.err.contains(says), code == 1, "{jump}: {}", answer.err);
     }
+    // dense rows of another body jump less than those of this one with noise, and yet it is another body
+    let poses = scratch.0.join("dense.csv").display().to_string();
+    let motion = "--omega 0.4,3,-0.3 --until 8 --every 0.05";
+    output(&format!("propagate --moments 1,2,2.5 {motion} --fields t,q --out {poses}"));
+    let jump = |moments: &str, code: i32| {
+        let answer = run(&format!("propagate --moments {moments} --through {poses} --every 0.2 --fields t"));
+        assert_eq!(answer.code, code, "{moments}: {}", answer.err);
+        let (_, rest) = answer.err.split_once("jumps by up to ").unwrap();
+        rest.split_once(' ').unwrap().0.parse::<f64>().unwrap()
+    };
+    let of_another = jump("1,2,3", 1);
+    output(&format!("simulate --moments 1,2,2.5 {motion} --attitude-noise 1e-3 --out {poses}"));
+    assert!(jump("1,2,2.5", 0) > of_another);
 }
 
 #[test]
