@@ -225,7 +225,8 @@ impl Body {
 }
 
 /// The body that a text names: one of the catalogue, with its start and the wheels that it carries then, or one of a file as `FILE` or `FILE:LINK`.
-/// A mesh has 1 kg/m^3, and neither wheels nor forces but a gravity gradient, under which its size does not count.
+/// A mesh has 1 kg/m^3, and neither wheels nor forces but a gravity gradient, under which its size does not count. A tensor that is valid, but
+/// suspicious, as of an implausible density, is a PolhodeWarning.
 ///
 /// >>> import polhode
 /// >>> polhode.body("toutatis")

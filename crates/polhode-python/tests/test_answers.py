@@ -336,6 +336,9 @@ def test_links_of_a_robot_are_examined(tmp_path):
         robot["forearn"]
     with pytest.raises(PolhodeError, match="violate"):
         robot["hand"].properties
+    path.write_text(URDF.replace('value="1.5"', 'value="0.001"'))
+    with pytest.warns(PolhodeWarning, match="of 'forearm': its tensor is suspicious: implausible density"):
+        polhode.body(f"{path}:forearm")
 
 
 def test_tables_in_memory_are_read_by_their_names(exact):

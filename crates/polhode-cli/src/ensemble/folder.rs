@@ -64,7 +64,7 @@ pub(super) fn check_replaced(flag: &str, folder: &Path, identity: &Identity) -> 
             Some(difference) => format!("holds results of another run: {difference}"),
             None => return Ok(()),
         },
-        None if folder.join(MARK).exists() => format!("holds a {MARK} that is not of an ensemble"),
+        None if folder.join(MARK).exists() => format!("holds a {MARK} that is not of results of an ensemble"),
         None => return Ok(()),
     };
     Err(replacing(flag, folder, &rule))

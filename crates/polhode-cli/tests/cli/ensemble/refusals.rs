@@ -362,7 +362,7 @@ fn results_of_another_run_are_replaced_only_on_demand() {
     done("ensemble other.toml --out fresh", &scratch);
     assert!(contents(&out) == contents(&scratch.0.join("fresh")));
     fs::write(out.join("run.toml"), "mine = true\n").unwrap();
-    expect("ensemble other.toml --out out", &["holds a run.toml that is not of an ensemble"]);
+    expect("ensemble other.toml --out out", &["holds a run.toml that is not of results of an ensemble"]);
     let part = "ensemble other.toml --out out --replace --shard 1/2";
     expect(part, &["--replace: given with shard 1/2, which replaces nothing"]);
 }
