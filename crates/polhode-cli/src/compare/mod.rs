@@ -53,7 +53,7 @@ const LOOKS: u32 = 64;
 /// time of the run without the check of its errors; rk4_steps, this time over that of a step of rk4 on the same body, measured
 /// side by side.
 ///
-/// Exit code 0: compared; 1: the rates of a trajectory contradict its attitudes.
+/// Exit code 0: compared; 1: the rates of a trajectory contradict its attitudes, or no row of it behind the start is compared.
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Compare {
@@ -168,11 +168,16 @@ impl Compare {
             }
         }
         let end = self.start_time + known.min(span);
-        let mut contradicted = Vec::new();
+        let mut failures: Vec<(&str, Vec<&str>)> = Vec::new();
         for trajectory in &trajectories {
-            let (row, contradicts) = self.foreign(&truth, trajectory)?;
+            let (row, failure) = self.foreign(&truth, trajectory)?;
             table.push(row);
-            contradicted.extend(contradicts.then_some(trajectory.name.as_str()));
+            if let Some(failure) = failure {
+                match failures.iter_mut().find(|(known, _)| *known == failure) {
+                    Some((_, names)) => names.push(trajectory.name.as_str()),
+                    None => failures.push((failure, vec![trajectory.name.as_str()])),
+                }
+            }
             let is_judged = |t: &f64| *t - self.start_time <= known;
             let last = trajectory.rows.iter().rev().map(|row| row.t).find(is_judged);
             if let Some(last) = last.filter(|t| *t < end - 1e-9 * span) {
@@ -194,10 +199,11 @@ impl Compare {
             crate::plot::write(file, picture, &figure.page())?;
         }
         output.write_whole(&Format::of(self.format, self.out.as_deref())?.write(&table))?;
-        if contradicted.is_empty() {
+        if failures.is_empty() {
             return Ok(());
         }
-        Err(Error::Failed(format!("rates contradict the attitudes beside them: {}", contradicted.join(", "))))
+        let told = failures.iter().map(|(failure, names)| format!("{failure}: {}", names.join(", ")));
+        Err(Error::Failed(told.collect::<Vec<_>>().join("; ")))
     }
 
     fn judged(&self, truth: &Truth, entry: &Entry) -> Result<(Judged, StepTime), Error> {

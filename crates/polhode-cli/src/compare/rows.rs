@@ -66,8 +66,12 @@ impl Compare {
         .to_vec()
     }
 
-    /// The row of a file, and whether its rates contradict its attitudes.
-    pub(super) fn foreign(&self, truth: &Truth, trajectory: &Trajectory) -> Result<(Vec<Cell>, bool), Error> {
+    /// The row of a file, and why it is no comparison.
+    pub(super) fn foreign(
+        &self,
+        truth: &Truth,
+        trajectory: &Trajectory,
+    ) -> Result<(Vec<Cell>, Option<&'static str>), Error> {
         let found = trajectory.against(truth, self.start_time)?;
         let columns = self.columns(truth.body());
         let mut row = vec![Cell::Empty; columns.len()];
@@ -109,7 +113,14 @@ impl Compare {
             set("largest_attitude_error", found.largest.into());
             set("attitude_time", found.at.map(|at| self.start_time + at).into());
         }
-        Ok((row, found.contradiction.is_some()))
+        let failure = if found.contradiction.is_some() {
+            Some("rates contradict the attitudes beside them")
+        } else if found.ending == Ending::Held && found.at == Some(0.0) {
+            Some("no row behind the start is compared")
+        } else {
+            None
+        };
+        Ok((row, failure))
     }
 }
 
