@@ -193,6 +193,9 @@ impl Show {
         let (Some(t), Some(q)) = (found.times.first().copied(), found.attitudes.first().copied()) else {
             return refused("", "has no rows", "name a file with attitudes");
         };
+        if found.times.last() == Some(&t) {
+            return refused(&short(t), "is its only time, and nothing would move", "give rows up to --until");
+        }
         let apart = first.attitude(t).map_or(0.0, |p| rotation_angle::<f64>(p.into(), q.into()));
         if apart > LOST {
             let rule = format!(

@@ -143,6 +143,8 @@ fn a_file_is_shown_at_its_own_times() {
         &["run.csv: '10.25': lies outside of the run"],
     );
     refuses(&format!("{FREE} --against few.html"), &["'few.html'", "no such file"]);
+    scratch.file("one.csv", "t,q_w,q_x,q_y,q_z\n0,1,0,0,0\n");
+    refuses(&format!("{FREE} --against one.csv"), &["one.csv: '0'", "only time, and nothing would move"]);
     assert!(!scratch.names().contains(&"refused.html".to_owned()));
     // an output does not replace an input
     let answer = polhode(&words(&format!("show {FREE} --against page.html --out page.html")), &scratch.0);
