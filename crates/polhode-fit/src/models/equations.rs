@@ -7,7 +7,7 @@ use crate::models::MODELS;
 use crate::settings::torque::TorqueModel;
 use crate::signal::stretch::Stretch;
 use crate::solve::linearised::residuals;
-use crate::solve::stacked::{Stacked, small_triangle};
+use crate::solve::stacked::{SmallTriangle, Stacked, small_triangle};
 use crate::solve::triangle::Triangle;
 use crate::solve::weak_estimate::WeakEstimate;
 
@@ -21,6 +21,9 @@ pub(crate) struct Equations {
     segments: Vec<Segment>,
     deviation: f64,
 }
+
+/// Tests whose rows are made and brought to a triangle together, so that all of them stand in the cache.
+const TOGETHER: usize = 1024;
 
 /// The equations of a segment.
 struct Segment {
@@ -58,8 +61,11 @@ impl Equations {
         let origin = Unknowns { x: weak.at.x, c: columns.iter().map(value).collect() };
         let width = columns.len() + 6;
         let each = weak.parts.iter().map(|part| {
-            let rows = part.with_columns(&stretches[part.stretch], &columns, &origin)?;
-            Some(Segment { equations: rows.len() / width, rows: small_triangle(&rows, width) })
+            let stretch = &stretches[part.stretch];
+            let may_act = |k: &usize| columns.get(*k).is_none_or(|column| column.acts_on(stretch));
+            let mut small = SmallTriangle::new(width, (0..width).filter(may_act).collect());
+            part.with_columns(stretch, &columns, &origin, TOGETHER, |rows| small.push(rows))?;
+            Some(Segment { equations: 3 * part.linearised.tests.count, rows: small.finished() })
         });
         let segments = each.collect::<Option<Vec<Segment>>>()?;
         let (errors, torques) = (errors.len(), columns.len() - errors.len() - common.len());

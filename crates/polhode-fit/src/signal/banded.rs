@@ -69,7 +69,7 @@ impl Banded {
 
     /// L⁻¹ b, of a factor, in place; b has rows of `width` numbers, one for each right-hand side.
     pub(crate) fn forward(&self, b: &mut [f64], width: usize) {
-        forward(&self.columns, self.pitch, self.band, b, width);
+        forward(&self.columns, self.pitch, self.band, b, width, 0);
     }
 
     /// log |L Lᵀ| of a factor L.
@@ -93,6 +93,35 @@ impl Banded {
     /// Source: Takahashi, Fagan, Chin 1973: Z = L⁻ᵀ D⁻¹ + (1 − Lᵀ) Z with unit L, from the last row up.
     pub(crate) fn inverse_band(&self) -> Banded {
         Banded { columns: inverse_band(&self.columns, self.pitch, self.band), ..*self }
+    }
+}
+
+/// L⁻¹ b of a factor L as [`Banded::forward`] makes it, to the last bit, where the rows of b come block by block.
+pub(crate) struct Forward<'a> {
+    factor: &'a Banded,
+    width: usize,
+    /// The last block, and before it the rows that it depends on.
+    rows: Vec<f64>,
+    /// How many rows came before those.
+    gone: usize,
+}
+
+impl<'a> Forward<'a> {
+    pub(crate) fn new(factor: &'a Banded, width: usize) -> Self {
+        Forward { factor, width, rows: Vec::new(), gone: 0 }
+    }
+
+    /// The rows of L⁻¹ b that belong to the next ones of b.
+    pub(crate) fn solved(&mut self, b: &[f64]) -> &[f64] {
+        let Banded { band, pitch, columns, .. } = self.factor;
+        let gone = (self.rows.len() / self.width).saturating_sub(*band);
+        self.rows.drain(..gone * self.width);
+        self.gone += gone;
+        let before = self.rows.len();
+        self.rows.extend_from_slice(b);
+        let columns = &columns[self.gone * pitch..][..self.rows.len() / self.width * pitch];
+        forward(columns, *pitch, *band, &mut self.rows, self.width, before / self.width);
+        &self.rows[before..]
     }
 }
 
@@ -246,13 +275,18 @@ fn factor(columns: &mut [f64], pitch: usize, band: usize) -> bool {
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn forward(columns: &[f64], pitch: usize, band: usize, b: &mut [f64], width: usize) {
+fn forward(columns: &[f64], pitch: usize, band: usize, b: &mut [f64], width: usize, done: usize) {
     for (j, column) in columns.chunks_exact(pitch).enumerate() {
         let (known, rest) = b[j * width..].split_at_mut(width);
-        for value in known.iter_mut() {
-            *value /= column[0];
+        // the first rows may be those of a solution: they are taken off the others alone
+        let solved = done.saturating_sub(j + 1);
+        if j >= done {
+            for value in known.iter_mut() {
+                *value /= column[0];
+            }
         }
-        for (l, row) in column[1..=band].iter().zip(rest.chunks_exact_mut(width)) {
+        let rest = rest[solved * width..].chunks_exact_mut(width);
+        for (l, row) in column[1 + solved..=band].iter().zip(rest) {
             for (sum, value) in row.iter_mut().zip(&*known) {
                 *sum -= l * value;
             }
@@ -449,6 +483,21 @@ mod tests {
             }
         }
         a
+    }
+
+    /// Rows that come block by block are solved for as those of the whole, to the last bit, also by blocks shorter than the band.
+    #[test]
+    fn blocks_are_solved_for_as_the_whole() {
+        let mut factor = example(9);
+        assert!(factor.factor());
+        let b: Vec<f64> = (0..18).map(|k| f64::from(k * k % 7) - 2.6).collect();
+        let mut expected = b.clone();
+        factor.forward(&mut expected, 2);
+        for together in [1, 2, 4, 9] {
+            let mut forward = Forward::new(&factor, 2);
+            let found: Vec<f64> = b.chunks(2 * together).flat_map(|b| forward.solved(b).to_vec()).collect();
+            assert_eq!(found, expected, "{together}");
+        }
     }
 
     #[test]

@@ -39,28 +39,42 @@ fn effect(
         .collect()
 }
 
-/// Takes the effect of torque noise out of the derivatives in `rows`, not whitened: those of the tensor, and of errors of scale
-/// and alignment, which have slopes as well.
-pub(crate) fn take_out(
-    rows: &mut [f64],
-    columns: &[Column],
-    j: &Matrix3<f64>,
-    factor: &Banded,
-    levels: Levels,
-    tests: &TestFunctions,
-) {
-    let Some(inverse) = j.try_inverse().filter(|_| levels.torque > 0.0) else { return };
-    let width = columns.len() + 6;
-    let r = rows.chunks_exact(width).map(|row| row[width - 1]).collect();
-    let of_columns = columns.iter().enumerate();
-    let by_column = of_columns.filter_map(|(k, c)| Some((k, j * c.effect().distortion()? * inverse)));
-    let by_tensor = (0..5).map(|k| (columns.len() + k, basis(k) * inverse));
-    let maps: Vec<(usize, Matrix3<f64>)> = by_column.chain(by_tensor).collect();
-    for (m, effect) in effect(r, factor, levels, j, tests).into_iter().enumerate() {
-        for (column, map) in &maps {
-            let share = map * effect;
-            for p in 0..3 {
-                rows[(3 * m + p) * width + column] -= share[p];
+/// The effect of torque noise on the derivatives of all tests: on those of the tensor, and of errors of scale and alignment, which have
+/// slopes as well.
+pub(crate) struct Driven {
+    width: usize,
+    /// The columns with their B J⁻¹.
+    maps: Vec<(usize, Matrix3<f64>)>,
+    effect: Vec<Vector3<f64>>,
+}
+
+impl Driven {
+    /// By the residuals of all tests, which nobody asks for where there is no torque noise: then it is `None`.
+    pub(crate) fn new(
+        residuals: impl FnOnce() -> Vec<f64>,
+        columns: &[Column],
+        j: &Matrix3<f64>,
+        factor: &Banded,
+        levels: Levels,
+        tests: &TestFunctions,
+    ) -> Option<Self> {
+        let inverse = j.try_inverse().filter(|_| levels.torque > 0.0)?;
+        let of_columns = columns.iter().enumerate();
+        let by_column = of_columns.filter_map(|(k, c)| Some((k, j * c.effect().distortion()? * inverse)));
+        let by_tensor = (0..5).map(|k| (columns.len() + k, basis(k) * inverse));
+        let maps = by_column.chain(by_tensor).collect();
+        let effect = effect(residuals(), factor, levels, j, tests);
+        Some(Driven { width: columns.len() + 6, maps, effect })
+    }
+
+    /// Takes it out of the rows of the tests from `first` on, not whitened.
+    pub(crate) fn take_out(&self, rows: &mut [f64], first: usize) {
+        for (rows, effect) in rows.chunks_exact_mut(3 * self.width).zip(&self.effect[first..]) {
+            for (column, map) in &self.maps {
+                let share = map * effect;
+                for p in 0..3 {
+                    rows[p * self.width + column] -= share[p];
+                }
             }
         }
     }

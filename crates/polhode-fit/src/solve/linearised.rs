@@ -13,7 +13,7 @@ use crate::signal::moments::groups;
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::{Terms, cross_derivative, slope};
 use crate::signal::test_functions::{Blocks, Seen, TestFunctions};
-use crate::solve::driven::take_out;
+use crate::solve::driven::Driven;
 use crate::thresholds::radius::LONG;
 use crate::thresholds::rounds::BESIDE;
 
@@ -80,7 +80,9 @@ impl Linearised {
     pub(crate) fn whitened(&self, factor: Banded, levels: Levels, driven: Option<&[Column]>) -> Whitened {
         let mut rows = self.rows.clone();
         if let Some(columns) = driven {
-            take_out(&mut rows, columns, &self.terms.j, &factor, levels, &self.tests);
+            let residuals = || last_column(&self.rows, self.width);
+            let driven = Driven::new(residuals, columns, &self.terms.j, &factor, levels, &self.tests);
+            driven.iter().for_each(|driven| driven.take_out(&mut rows, 0));
         }
         factor.forward(&mut rows, self.width);
         Whitened { factor, levels, width: self.width, rows }
@@ -188,6 +190,11 @@ fn carry(
         }
         *n = *n * kept + own * (stretch.weights[i] * share);
     }
+}
+
+/// The residuals where the rows were linearised.
+pub(crate) fn last_column(rows: &[f64], width: usize) -> Vec<f64> {
+    rows.chunks_exact(width).map(|row| row[width - 1]).collect()
 }
 
 pub(crate) fn residuals(rows: &[f64], width: usize, origin: &Unknowns, at: &Unknowns) -> Vec<f64> {

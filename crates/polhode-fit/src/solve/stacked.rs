@@ -196,19 +196,81 @@ fn triangles(rows: &[&[f64]], columns: &[Column], width: usize) -> Option<Vec<Ve
 
 /// Rows of `width` numbers as the rows of their triangle: the columns that are zero in all of them are left out of it.
 pub(crate) fn small_triangle(rows: &[f64], width: usize) -> Vec<f64> {
-    let used: Vec<usize> =
-        (0..width).filter(|&k| rows.chunks_exact(width).any(|row| row[k] != 0.0)).collect();
-    if rows.len() / width <= used.len() {
-        return rows.to_vec();
+    let used = (0..width).filter(|&k| rows.chunks_exact(width).any(|row| row[k] != 0.0));
+    let mut small = SmallTriangle::new(width, used.collect());
+    small.push(rows);
+    small.finished()
+}
+
+/// The same of rows that come block by block.
+pub(crate) struct SmallTriangle {
+    width: usize,
+    /// Columns that may have numbers, and those of them that had none so far: these change nothing in the triangle of the others.
+    columns: Vec<usize>,
+    zero: Vec<usize>,
+    triangle: Triangle,
+    count: usize,
+    /// As many of the first rows as may be fewer than a triangle has.
+    first: Vec<f64>,
+}
+
+impl SmallTriangle {
+    /// Of rows in which all other columns are zero.
+    pub(crate) fn new(width: usize, columns: Vec<usize>) -> Self {
+        let (zero, triangle) = (columns.clone(), Triangle::new(columns.len()));
+        SmallTriangle { width, columns, zero, triangle, count: 0, first: Vec::new() }
     }
-    let mut triangle = Triangle::new(used.len());
-    rows.chunks_exact(width).for_each(|row| triangle.push(used.iter().map(|&k| row[k])));
-    let r = triangle.finished();
-    let mut small = vec![0.0; used.len() * width];
-    for i in 0..used.len() {
-        for k in i..used.len() {
-            small[i * width + used[k]] = r[(i, k)];
+
+    pub(crate) fn push(&mut self, rows: &[f64]) {
+        for row in rows.chunks_exact(self.width) {
+            if self.count < self.columns.len() {
+                self.first.extend_from_slice(row);
+            }
+            self.count += 1;
+            self.zero.retain(|&k| row[k] == 0.0);
+            self.triangle.push(self.columns.iter().map(|&k| row[k]));
         }
     }
-    small
+
+    pub(crate) fn finished(self) -> Vec<f64> {
+        let used = self.columns.iter().copied().enumerate().filter(|(_, k)| !self.zero.contains(k));
+        let used: Vec<(usize, usize)> = used.collect();
+        if self.count <= used.len() {
+            return self.first;
+        }
+        let r = self.triangle.finished();
+        let mut small = vec![0.0; used.len() * self.width];
+        for (i, (row, _)) in used.iter().enumerate() {
+            for (column, k) in &used[i..] {
+                small[i * self.width + k] = r[(*row, *column)];
+            }
+        }
+        small
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use polhode::num::Random;
+
+    /// Columns that are zero in all rows leave the triangle of the others as it is without them, to the last bit, wherever a block ends; rows that
+    /// are fewer than a triangle has stay what they are.
+    #[test]
+    fn columns_of_zeros_change_nothing() {
+        let (width, zero) = (7, [1, 4]);
+        for count in [3, 5, 6, 7, 300, 1000] {
+            let mut random = Random::new(5);
+            let number = |i: usize| if zero.contains(&(i % width)) { 0.0 } else { random.normal() };
+            let rows: Vec<f64> = (0..count * width).map(number).collect();
+            let expected = small_triangle(&rows, width);
+            assert_eq!(expected.len(), if count <= 5 { count * width } else { 5 * width });
+            assert_eq!(expected == rows, count <= 5);
+            for together in [1, 64, count] {
+                let mut small = SmallTriangle::new(width, (0..width).filter(|k| *k != 1).collect());
+                rows.chunks(together * width).for_each(|block| small.push(block));
+                assert_eq!(small.finished(), expected, "{count} {together}");
+            }
+        }
+    }
 }

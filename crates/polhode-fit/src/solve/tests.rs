@@ -26,6 +26,8 @@ use crate::signal::covariance::{Covariance, Levels, Shape};
 use crate::signal::stretch::{KnownInputs, Stretch};
 use crate::signal::test_functions::{Seen, TestFunctions};
 use crate::solve::linearised::Linearised;
+use crate::solve::rows::{Rows, rows};
+use crate::solve::weak_estimate::Part;
 
 /// Readings of a free motion with wheels and torques beside it, so far apart that no two are taken for one.
 struct Example {
@@ -323,6 +325,41 @@ fn rows_are_those_of_the_equations_sample_by_sample() {
     }
     let apart = (column(width - 1) - residual).amax();
     assert!(apart < 1e-5, "{apart:e}");
+}
+
+/// The rows of some tests are to the last bit what they are among those of all.
+#[test]
+fn rows_of_some_tests_are_those_among_all() {
+    let Example { stretch, tests, noise, columns, at, .. } = Example::new();
+    let all = rows(&stretch, &noise, &columns, &at, &tests);
+    let each = Rows::new(&stretch, &noise, &columns, &at, &tests);
+    for together in [1, 7, tests.count] {
+        let blocks = (0..tests.count).step_by(together).map(|k| each.of(k..tests.count.min(k + together)));
+        assert_eq!(blocks.flatten().collect::<Vec<f64>>(), all, "{together}");
+    }
+}
+
+/// Rows that are made and whitened block by block are those of one block to the last bit, with torque noise and without, whether all columns have
+/// a value or some are zero.
+#[test]
+fn whitened_blocks_are_those_of_the_whole() {
+    for kept in [1, 2] {
+        let mut example = Example::new();
+        example.at.c.iter_mut().enumerate().filter(|(k, _)| k % kept > 0).for_each(|(_, c)| *c = 0.0);
+        for levels in [Levels::WHITE, NOISY, Levels { shape: Shape::Alike, ..NOISY }] {
+            let factor = example.covariance().into_factor(levels).unwrap();
+            let linearised = example.linearised();
+            let expected = linearised.whitened(factor, levels, Some(&example.columns)).rows;
+            let (noise, rows) = (example.noise.clone(), Vec::new());
+            let part = Part { stretch: 0, linearised, rows, levels, log_determinant: 0.0, noise };
+            for together in [1, 5, example.tests.count] {
+                let mut found = Vec::new();
+                let take = |rows: &[f64]| found.extend_from_slice(rows);
+                part.with_columns(&example.stretch, &example.columns, &example.at, together, take).unwrap();
+                assert_eq!(found, expected, "{levels:?} {together}");
+            }
+        }
+    }
 }
 
 /// The band is Σ A Aᵀ of the derivatives A of the residuals with respect to the samples, and the overlaps of the test functions.

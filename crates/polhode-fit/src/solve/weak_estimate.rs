@@ -4,17 +4,20 @@ use crate::thresholds::noise::DEVIATIONS;
 use crate::thresholds::rounds::{BEYOND, RESTLESS, STILL};
 use crate::thresholds::stacked::ITERATIONS;
 use nalgebra::Vector3;
+use polhode::record::both;
 
 use crate::columns::column::{Column, Unknowns};
 use crate::physical::coordinates::{Coordinates, Form, eigen, pair, tensor};
 use crate::physical::law::LARGEST_SHARE;
+use crate::signal::banded::Forward;
 use crate::signal::covariance::{Covariance, Levels};
 use crate::signal::stretch::Stretch;
-use crate::solve::driven::take_out;
-use crate::solve::linearised::{Linearised, residuals};
-use crate::solve::rows::rows;
+use crate::solve::driven::Driven;
+use crate::solve::linearised::{Linearised, last_column, residuals};
+use crate::solve::rows::{Rows, rows};
 use crate::solve::stacked::Stacked;
 use crate::thresholds::noise::SURE;
+use crate::thresholds::radius::LONG;
 
 /// How near rounds ended to a fixed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,20 +66,46 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    /// The rows of the same samples with other columns, whitened alike.
+    /// Hands over the rows of the same samples with other columns, whitened alike, those of so many tests `together`: all of them would be the
+    /// most that a fit keeps. `None` where the covariance is not positive.
     pub(crate) fn with_columns(
         &self,
         stretch: &Stretch,
         columns: &[Column],
         at: &Unknowns,
-    ) -> Option<Vec<f64>> {
-        // the rows first: what they are made of is gone when the covariance needs its room
-        let tests = &self.linearised.tests;
-        let mut rows = rows(stretch, &self.noise, columns, at, tests);
+        together: usize,
+        mut take: impl FnMut(&[f64]),
+    ) -> Option<()> {
+        let Linearised { tests, terms, .. } = &self.linearised;
         let factor = self.covariance(stretch).into_factor(self.levels)?;
-        take_out(&mut rows, columns, &self.linearised.terms.j, &factor, self.levels, tests);
-        factor.forward(&mut rows, columns.len() + 6);
-        Some(rows)
+        let residuals = || self.residuals_with(stretch, columns, at);
+        let driven = Driven::new(residuals, columns, &terms.j, &factor, self.levels, tests);
+        let rows = Rows::new(stretch, &self.noise, columns, at, tests);
+        let mut white = Forward::new(&factor, columns.len() + 6);
+        let mut blocks = (0..tests.count).step_by(together);
+        let mut following = || {
+            let first = blocks.next()?;
+            Some((first, rows.of(first..tests.count.min(first + together))))
+        };
+        let mut next = following();
+        while let Some((first, mut own)) = next {
+            let whiten = || {
+                driven.iter().for_each(|driven| driven.take_out(&mut own, first));
+                take(white.solved(&own));
+            };
+            // in a long stretch those after them are made beside that
+            (next, ()) = both(self.noise.len() > LONG, &mut following, whiten);
+        }
+        Some(())
+    }
+
+    /// The residuals of the same samples with other columns. Those that are zero do not change them.
+    fn residuals_with(&self, stretch: &Stretch, columns: &[Column], at: &Unknowns) -> Vec<f64> {
+        let (columns, c): (Vec<Column>, Vec<f64>) =
+            columns.iter().copied().zip(at.c.iter().copied()).filter(|(_, c)| *c != 0.0).unzip();
+        let at = Unknowns { x: at.x, c };
+        let rows = rows(stretch, &self.noise, &columns, &at, &self.linearised.tests);
+        last_column(&rows, columns.len() + 6)
     }
 
     /// The covariance of its equations, which is not kept.
