@@ -610,6 +610,7 @@ mod tests {
             stretch: 0,
             linearised: Linearised::new(stretch, &noise, &weak.columns, weak.at.clone(), tests.clone()),
             rows: Vec::new(),
+            left: Vec::new(),
             levels: Levels { white, ..Levels::WHITE },
             log_determinant: 0.0,
             noise: noise.clone(),
@@ -681,8 +682,8 @@ mod tests {
         let (tests, noise) = (TestFunctions::new(stretch, 1.0).unwrap(), vec![Vector3::<f64>::zeros(); 129]);
         let linearised = Linearised::new(stretch, &noise, &base.columns, at.clone(), tests);
         let stacked = Some(Stacked::new(&[linearised.rows.as_slice()], &base.columns, at, 2e-4));
-        let (rows, levels) = (Vec::new(), Levels::WHITE);
-        let part = Part { stretch: 0, linearised, rows, levels, log_determinant: 0.0, noise };
+        let (rows, left, levels) = (Vec::new(), Vec::new(), Levels::WHITE);
+        let part = Part { stretch: 0, linearised, rows, left, levels, log_determinant: 0.0, noise };
         WeakEstimate { at: at.clone(), stacked, rows: 100, parts: vec![part], ..base }
     }
 

@@ -246,8 +246,8 @@ mod tests {
         let tests = TestFunctions::new(&stretch, 1.5).unwrap();
         let equations = 3 * tests.count;
         let linearised = Linearised::new(&stretch, &noise, &columns, at.clone(), tests);
-        let (rows, levels) = (Vec::new(), Levels::WHITE);
-        let part = Part { stretch: 0, linearised, rows, levels, log_determinant: 0.0, noise };
+        let (rows, left, levels) = (Vec::new(), Vec::new(), Levels::WHITE);
+        let part = Part { stretch: 0, linearised, rows, left, levels, log_determinant: 0.0, noise };
         let weak = WeakEstimate {
             radius: 1.5,
             columns,

@@ -11,6 +11,7 @@ use polhode::record::both;
 
 use crate::signal::stretch::{KnownInputs, Stretch};
 use crate::signal::test_functions::{LANES, Seen, TestFunctions};
+use crate::signal::zeros::zeros;
 
 /// Sums against one test function φ with the weights w of the samples.
 #[derive(Clone, Copy, Debug)]
@@ -177,12 +178,14 @@ impl Moments {
         // the halves of a long stretch side by side, whatever the machine is
         let (count, long) = (noise.len(), noise.len() > LONG);
         let middle = if long { count / 2 } else { 0 };
-        let of = |samples: Range<usize>| {
-            let mut sums: Running = core::array::from_fn(|_| tests.room());
+        let of = |samples: Range<usize>, room: usize| {
+            let mut sums: Running = core::array::from_fn(|_| zeros(room + LANES));
             add(stretch, noise, samples, tests, &mut sums);
             sums
         };
-        let (mut sums, first) = both(long, || of(middle..count), || long.then(|| of(0..middle)));
+        // those of the first half see no tests behind it
+        let first = || long.then(|| of(0..middle, tests.at(stretch.times[middle]).end));
+        let (mut sums, first) = both(long, || of(middle..count, tests.count), first);
         for (sum, first) in sums.iter_mut().zip(first.iter().flatten()) {
             sum.iter_mut().zip(first).for_each(|(sum, first)| *sum += first);
         }

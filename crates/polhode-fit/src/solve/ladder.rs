@@ -335,8 +335,7 @@ fn has_torque_noise(stretches: &[Stretch], weak: &WeakEstimate, variance: f64) -
     let free = weak.dof().max(1) as f64 / weak.rows.max(1) as f64;
     let choice = Choice { white: false };
     weak.parts.iter().any(|part| {
-        let e = part.linearised.residuals(&weak.at);
-        likeliest(&part.covariance(&stretches[part.stretch]), &e, variance, free, choice, None)
+        likeliest(&part.covariance(&stretches[part.stretch]), &part.left, variance, free, choice, None)
             .is_some_and(|levels| levels.torque > 0.0)
     })
 }

@@ -62,8 +62,9 @@ impl Linearised {
         tests: TestFunctions,
     ) -> (Self, Covariance) {
         let terms = terms_of(columns, &origin, stretch);
+        // of a long stretch each is made by halves, and what the first is made of is gone when the other needs its room
         let (rows, covariance) = both(
-            noise.len() > BESIDE,
+            (BESIDE + 1..=LONG).contains(&noise.len()),
             || rows(stretch, noise, columns, &origin, &tests),
             || Covariance::new(stretch, noise, &terms, &tests),
         );
@@ -78,9 +79,29 @@ impl Linearised {
     /// The equations whitened by the factor of the covariance of their residuals at `levels`; with `driven` columns the
     /// effect of torque noise is taken out of their derivatives.
     pub(crate) fn whitened(&self, factor: Banded, levels: Levels, driven: Option<&[Column]>) -> Whitened {
-        let mut rows = self.rows.clone();
+        self.whiten(self.rows.clone(), factor, levels, driven)
+    }
+
+    /// The same in the place of its rows, which nobody asks for any more.
+    pub(crate) fn into_whitened(
+        &mut self,
+        factor: Banded,
+        levels: Levels,
+        driven: Option<&[Column]>,
+    ) -> Whitened {
+        let rows = core::mem::take(&mut self.rows);
+        self.whiten(rows, factor, levels, driven)
+    }
+
+    fn whiten(
+        &self,
+        mut rows: Vec<f64>,
+        factor: Banded,
+        levels: Levels,
+        driven: Option<&[Column]>,
+    ) -> Whitened {
         if let Some(columns) = driven {
-            let residuals = || last_column(&self.rows, self.width);
+            let residuals = || last_column(&rows, self.width);
             let driven = Driven::new(residuals, columns, &self.terms.j, &factor, levels, &self.tests);
             driven.iter().for_each(|driven| driven.take_out(&mut rows, 0));
         }

@@ -174,13 +174,13 @@ impl<'a> Rounds<'a> {
         each.map(of).unzip()
     }
 
-    /// These equations, and what they are whitened.
+    /// These equations without their rows, and what they are whitened.
     pub(crate) fn whiten(&self) -> Option<(Vec<Linearised>, Vec<Whitened>)> {
-        let (parts, covariances) = self.with_covariances();
-        let each = parts.iter().zip(covariances).zip(&self.levels);
+        let (mut parts, covariances) = self.with_covariances();
+        let each = parts.iter_mut().zip(covariances).zip(&self.levels);
         let whitened = each.map(|((part, covariance), levels)| {
             let factor = covariance.into_factor(*levels)?;
-            Some(part.whitened(factor, *levels, self.driven.then_some(self.columns)))
+            Some(part.into_whitened(factor, *levels, self.driven.then_some(self.columns)))
         });
         let whitened = whitened.collect::<Option<_>>()?;
         Some((parts, whitened))
@@ -371,6 +371,13 @@ impl<'a> Rounds<'a> {
             if stands_out { (stacked.root, Form::zeros()) } else { self.constant_rates(variance)? };
         let radius = self.used.first()?.2.radius;
         let each = self.used.into_iter().zip(parts).zip(whitened).zip(determinants).zip(self.noise);
+        let each = each.map(|(((((k, _, _), mut linearised), whitened), log_determinant), noise)| {
+            let left = linearised.residuals(&at);
+            linearised.rows = Vec::new();
+            let Whitened { levels, rows, .. } = whitened;
+            Part { stretch: k, linearised, rows, left, levels, log_determinant, noise }
+        });
+        let parts = each.collect();
         Some(WeakEstimate {
             radius,
             columns: self.columns.to_vec(),
@@ -381,16 +388,7 @@ impl<'a> Rounds<'a> {
             squares: stacked.squares,
             rows: stacked.rows,
             stacked: Some(stacked),
-            parts: each
-                .map(|(((((k, _, _), linearised), whitened), log_determinant), noise)| Part {
-                    stretch: k,
-                    linearised,
-                    levels: whitened.levels,
-                    log_determinant,
-                    rows: whitened.rows,
-                    noise,
-                })
-                .collect(),
+            parts,
         })
     }
 

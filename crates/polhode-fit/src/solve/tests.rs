@@ -350,8 +350,8 @@ fn whitened_blocks_are_those_of_the_whole() {
             let factor = example.covariance().into_factor(levels).unwrap();
             let linearised = example.linearised();
             let expected = linearised.whitened(factor, levels, Some(&example.columns)).rows;
-            let (noise, rows) = (example.noise.clone(), Vec::new());
-            let part = Part { stretch: 0, linearised, rows, levels, log_determinant: 0.0, noise };
+            let (noise, rows, left) = (example.noise.clone(), Vec::new(), Vec::new());
+            let part = Part { stretch: 0, linearised, rows, left, levels, log_determinant: 0.0, noise };
             for together in [1, 5, example.tests.count] {
                 let mut found = Vec::new();
                 let take = |rows: &[f64]| found.extend_from_slice(rows);

@@ -55,9 +55,12 @@ pub(crate) struct WeakEstimate {
 /// The equations of one stretch.
 pub(crate) struct Part {
     pub(crate) stretch: usize,
+    /// Without its rows.
     pub(crate) linearised: Linearised,
-    /// Its rows whitened.
+    /// These whitened.
     pub(crate) rows: Vec<f64>,
+    /// Residuals where the rounds ended, not whitened.
+    pub(crate) left: Vec<f64>,
     pub(crate) levels: Levels,
     /// log |C| less that of the noise of the rates alone; infinite where that is not positive.
     pub(crate) log_determinant: f64,
@@ -233,7 +236,8 @@ pub(crate) mod tests {
             let part = |(k, rows): (usize, Vec<f64>)| {
                 let (noise, tests) = (vec![Vector3::zeros(); 17], TestFunctions::new(&stretch, 1.0).unwrap());
                 let linearised = Linearised::new(&stretch, &noise, columns, at.clone(), tests);
-                Part { stretch: k, linearised, rows, levels: Levels::WHITE, log_determinant: 0.0, noise }
+                let (left, levels) = (Vec::new(), Levels::WHITE);
+                Part { stretch: k, linearised, rows, left, levels, log_determinant: 0.0, noise }
             };
             let parts: Vec<Part> = parts.into_iter().enumerate().map(part).collect();
             let rows: Vec<&[f64]> = parts.iter().map(|part| part.rows.as_slice()).collect();

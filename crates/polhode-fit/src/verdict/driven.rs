@@ -59,9 +59,8 @@ pub(crate) fn check_inputs(
         let moments = Moments::new(stretch, &vec![Vector3::zeros(); stretch.times.len()], tests);
         let j = part.linearised.terms.j;
         slopes += (0..tests.count).map(|m| (j * moments.readings(m).slope).norm_squared()).sum::<f64>();
-        let own = part.linearised.residuals(&weak.at);
-        left += own.iter().map(|residual| residual * residual).sum::<f64>();
-        noise += own.len() as f64 * part.covariance(stretch).mean_variances().0 * variance;
+        left += part.left.iter().map(|residual| residual * residual).sum::<f64>();
+        noise += part.left.len() as f64 * part.covariance(stretch).mean_variances().0 * variance;
     }
     let unexplained = (left - noise) / (slopes - noise);
     if noise < AUDIBLE * slopes && unexplained > DRIVEN {
@@ -148,15 +147,16 @@ mod tests {
         let at = Unknowns { x: Coordinates::zeros(), c: Vec::new() };
         let found = |left: f64, noise: f64| {
             let raw = vec![Vector3::zeros(); times.len()];
-            let mut linearised = Linearised::new(&stretch, &raw, &[], at.clone(), tests.clone());
-            let all: f64 = linearised.rows.iter().skip(5).step_by(6).map(|r| r * r).sum();
-            linearised.rows.iter_mut().skip(5).step_by(6).for_each(|r| *r *= left.sqrt());
+            let linearised = Linearised::new(&stretch, &raw, &[], at.clone(), tests.clone());
+            let residuals = linearised.residuals(&at);
+            let all: f64 = residuals.iter().map(|r| r * r).sum();
+            let left = residuals.iter().map(|r| r * left.sqrt()).collect();
             let (white, _) = linearised.covariance(&stretch, &raw).mean_variances();
             let variance = noise * all / (3 * tests.count) as f64 / white;
             let mut weak = WeakEstimate::of_rows(&[], &at, Vec::new(), 1.0);
             let (levels, rows) = (Levels::WHITE, Vec::new());
             weak.parts =
-                vec![Part { stretch: 0, linearised, rows, levels, log_determinant: 0.0, noise: raw }];
+                vec![Part { stretch: 0, linearised, rows, left, levels, log_determinant: 0.0, noise: raw }];
             check_inputs(&weak, core::slice::from_ref(&stretch), variance)
         };
         let told = |left: f64, noise: f64| match found(left, noise) {
