@@ -2,6 +2,8 @@
 //!
 //! Columns are padded with zeros to whole registers, so that a column is added to another without a test of its length.
 
+use core::ops::Range;
+
 use multiversion::multiversion;
 
 use crate::signal::zeros::zeros;
@@ -62,14 +64,29 @@ impl Banded {
         [own(before, 0), own(after, column)]
     }
 
+    /// All of its columns, as if there were so many before them.
+    pub(crate) fn numbered_from(&mut self, first: usize) -> Columns<'_> {
+        Columns { first, pitch: self.pitch, columns: &mut self.columns }
+    }
+
+    /// Those of a range.
+    pub(crate) fn columns(&self, range: Range<usize>) -> Banded {
+        let columns = self.columns[range.start * self.pitch..range.end * self.pitch].to_vec();
+        Banded { size: range.len(), columns, ..*self }
+    }
+
+    pub(crate) fn scale(&mut self, factor: f64) {
+        self.columns.iter_mut().for_each(|entry| *entry *= factor);
+    }
+
     /// Replaces the matrix by its Cholesky factor; false where it is not positive.
     pub(crate) fn factor(&mut self) -> bool {
-        factor(&mut self.columns, self.pitch, self.band)
+        eliminated(&mut self.columns, self.size, self.pitch, self.band)
     }
 
     /// L⁻¹ b, of a factor, in place; b has rows of `width` numbers, one for each right-hand side.
     pub(crate) fn forward(&self, b: &mut [f64], width: usize) {
-        forward(&self.columns, self.pitch, self.band, b, width, 0);
+        forward(&self.columns, self.pitch, self.band, b, width);
     }
 
     /// log |L Lᵀ| of a factor L.
@@ -96,32 +113,38 @@ impl Banded {
     }
 }
 
-/// L⁻¹ b of a factor L as [`Banded::forward`] makes it, to the last bit, where the rows of b come block by block.
-pub(crate) struct Forward<'a> {
-    factor: &'a Banded,
-    width: usize,
-    /// The last block, and before it the rows that it depends on.
+/// L⁻¹ b as [`Banded::forward`] makes it, to the last bit, where the columns of the matrix come block by block, each with the rows of b
+/// that belong to it. What is kept is as long as a block and the band.
+#[derive(Default)]
+pub(crate) struct Forward {
+    columns: Vec<f64>,
     rows: Vec<f64>,
-    /// How many rows came before those.
-    gone: usize,
+    /// Those of the first columns and rows that were handed over.
+    done: usize,
 }
 
-impl<'a> Forward<'a> {
-    pub(crate) fn new(factor: &'a Banded, width: usize) -> Self {
-        Forward { factor, width, rows: Vec::new(), gone: 0 }
-    }
-
-    /// The rows of L⁻¹ b that belong to the next ones of b.
-    pub(crate) fn solved(&mut self, b: &[f64]) -> &[f64] {
-        let Banded { band, pitch, columns, .. } = self.factor;
-        let gone = (self.rows.len() / self.width).saturating_sub(*band);
-        self.rows.drain(..gone * self.width);
-        self.gone += gone;
-        let before = self.rows.len();
+impl Forward {
+    /// The rows of L⁻¹ b that can be told by now, all where these columns are the last; `None` where the matrix is not positive. The columns of
+    /// a factor stay as they are.
+    pub(crate) fn solved(
+        &mut self,
+        block: &Banded,
+        is_factor: bool,
+        b: &[f64],
+        is_last: bool,
+    ) -> Option<&[f64]> {
+        let (pitch, band, width) = (block.pitch, block.band, b.len() / block.size);
+        self.columns.drain(..self.done * pitch);
+        self.rows.drain(..self.done * width);
+        self.columns.extend_from_slice(&block.columns);
         self.rows.extend_from_slice(b);
-        let columns = &columns[self.gone * pitch..][..self.rows.len() / self.width * pitch];
-        forward(columns, *pitch, *band, &mut self.rows, self.width, before / self.width);
-        &self.rows[before..]
+        let count = self.columns.len() / pitch;
+        self.done = if is_last { count } else { count.saturating_sub(band) / PIVOTS * PIVOTS };
+        if !is_factor && !eliminated(&mut self.columns, self.done, pitch, band) {
+            return None;
+        }
+        forward(&self.columns[..self.done * pitch], pitch, band, &mut self.rows, width);
+        Some(&self.rows[..self.done * width])
     }
 }
 
@@ -265,9 +288,10 @@ impl Product {
     }
 }
 
-fn factor(columns: &mut [f64], pitch: usize, band: usize) -> bool {
+/// Makes the first `count` columns those of the factor, and takes their parts off the others; false where the matrix is not positive.
+fn eliminated(columns: &mut [f64], count: usize, pitch: usize, band: usize) -> bool {
     let size = columns.len() / pitch;
-    (0..size).step_by(PIVOTS).all(|j| {
+    (0..count).step_by(PIVOTS).all(|j| {
         let pivots = PIVOTS.min(size - j);
         let end = (j + pivots + band).min(size);
         eliminate(&mut columns[j * pitch..end * pitch], pitch, pivots, band)
@@ -275,18 +299,13 @@ fn factor(columns: &mut [f64], pitch: usize, band: usize) -> bool {
 }
 
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn forward(columns: &[f64], pitch: usize, band: usize, b: &mut [f64], width: usize, done: usize) {
+fn forward(columns: &[f64], pitch: usize, band: usize, b: &mut [f64], width: usize) {
     for (j, column) in columns.chunks_exact(pitch).enumerate() {
         let (known, rest) = b[j * width..].split_at_mut(width);
-        // the first rows may be those of a solution: they are taken off the others alone
-        let solved = done.saturating_sub(j + 1);
-        if j >= done {
-            for value in known.iter_mut() {
-                *value /= column[0];
-            }
+        for value in known.iter_mut() {
+            *value /= column[0];
         }
-        let rest = rest[solved * width..].chunks_exact_mut(width);
-        for (l, row) in column[1 + solved..=band].iter().zip(rest) {
+        for (l, row) in column[1..=band].iter().zip(rest.chunks_exact_mut(width)) {
             for (sum, value) in row.iter_mut().zip(&*known) {
                 *sum -= l * value;
             }
@@ -485,19 +504,27 @@ mod tests {
         a
     }
 
-    /// Rows that come block by block are solved for as those of the whole, to the last bit, also by blocks shorter than the band.
+    /// Rows and columns that come block by block are solved for as those of the whole, to the last bit, also by blocks shorter than the band.
     #[test]
     fn blocks_are_solved_for_as_the_whole() {
-        let mut factor = example(9);
+        let (a, b) = (example(15), (0..30).map(|k| f64::from(k * k % 7) - 2.6).collect::<Vec<f64>>());
+        let (mut factor, mut expected) = (a.clone(), b.clone());
         assert!(factor.factor());
-        let b: Vec<f64> = (0..18).map(|k| f64::from(k * k % 7) - 2.6).collect();
-        let mut expected = b.clone();
         factor.forward(&mut expected, 2);
-        for together in [1, 2, 4, 9] {
-            let mut forward = Forward::new(&factor, 2);
-            let found: Vec<f64> = b.chunks(2 * together).flat_map(|b| forward.solved(b).to_vec()).collect();
-            assert_eq!(found, expected, "{together}");
+        for (together, is_factor) in [(1, false), (3, false), (4, false), (15, false), (1, true), (4, true)] {
+            let (mut forward, mut found) = (Forward::default(), Vec::new());
+            for first in (0..15).step_by(together) {
+                let own = first..15.min(first + together);
+                let block = if is_factor { &factor } else { &a }.columns(own.clone());
+                let rows = &b[2 * own.start..2 * own.end];
+                found.extend_from_slice(forward.solved(&block, is_factor, rows, own.end == 15).unwrap());
+            }
+            assert_eq!(found, expected, "{together} {is_factor}");
         }
+        // the last pivot is zero
+        let mut singular = Banded::zeros(2, 1);
+        [(0, 0), (1, 0), (1, 1)].map(|(i, j)| singular.add(i, j, 1.0));
+        assert!(Forward::default().solved(&singular, false, &[1.0, 1.0], true).is_none());
     }
 
     #[test]

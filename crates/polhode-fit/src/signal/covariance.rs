@@ -1,5 +1,7 @@
 //! The covariance of the weak equations of one stretch by the noise of the rates and by torque noise: a narrow band.
 
+use core::ops::Range;
+
 use multiversion::multiversion;
 use nalgebra::{Matrix3, Vector3};
 use polhode::record::both;
@@ -67,7 +69,7 @@ impl Covariance {
         terms: &Terms,
         tests: &TestFunctions,
     ) -> Self {
-        let noise = of_rates(stretch, noise, terms, tests);
+        let noise = OfRates::new(stretch, noise, terms, tests).all();
         Covariance { tests: tests.clone(), j: terms.j, noise }
     }
 
@@ -145,6 +147,31 @@ impl Covariance {
     }
 }
 
+/// The same column by column, where torque noise has no part in it, and nothing of it is kept.
+pub(crate) struct Whites<'a> {
+    rates: OfRates<'a>,
+    level: f64,
+}
+
+impl<'a> Whites<'a> {
+    pub(crate) fn new(
+        stretch: &'a Stretch,
+        noise: &'a [Vector3<f64>],
+        terms: &'a Terms,
+        tests: &'a TestFunctions,
+        level: f64,
+    ) -> Self {
+        Whites { rates: OfRates::new(stretch, noise, terms, tests), level }
+    }
+
+    /// The columns of some tests.
+    pub(crate) fn of(&self, own: Range<usize>) -> Banded {
+        let mut columns = self.rates.of(own);
+        columns.scale(self.level);
+        columns
+    }
+}
+
 /// A column of several matrices: the noise of the rates at each level of it, and torque noise.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
 fn add_levels(into: &mut [Several], noise: &[f64], white: Several, torque: &[Several]) {
@@ -165,42 +192,65 @@ const ROWS: usize = (3 * MOST).div_ceil(REGISTER) * REGISTER;
 const ROOM: usize = ROWS + REGISTER;
 
 /// Σ A Aᵀ with A = −φ' J + φ K by pairs of tests.
-fn of_rates(stretch: &Stretch, noise: &[Vector3<f64>], terms: &Terms, tests: &TestFunctions) -> Banded {
-    let mut sum = Banded::zeros(3 * tests.count, 3 * tests.reach + 2);
-    let maker = Maker::new(terms);
-    // the halves of a long stretch side by side, whatever the machine is; from a group on where the second begins
-    let (count, long) = (noise.len(), noise.len() > LONG);
-    let ranges = |from: usize| ranges(stretch, tests.radius, from);
-    let first_of_second =
-        long.then(|| ranges(0).find(|range| range.start >= count / 2)).flatten().map(|range| range.start);
-    let middle = first_of_second.unwrap_or(0);
-    let split = first_of_second.map_or(0, |sample| tests.at(stretch.times[sample]).start);
-    let [mut before, mut after] = sum.split_mut(3 * split);
-    let first = || {
-        let mut beyond = Vec::new();
-        for range in ranges(0).take_while(|range| range.end <= middle) {
-            let own = group(stretch, noise, range.clone());
-            if tests.at(own.time).end > split {
-                beyond.push(range);
-            } else {
-                add_pairs(&mut before, tests, own.time, &maker.products(&own));
+struct OfRates<'a> {
+    stretch: &'a Stretch,
+    noise: &'a [Vector3<f64>],
+    tests: &'a TestFunctions,
+    maker: Maker<'a>,
+    groups: Vec<Range<usize>>,
+    /// The first group of the second half of a long stretch, and the first test that it sees.
+    middle: usize,
+    split: usize,
+}
+
+impl<'a> OfRates<'a> {
+    fn new(
+        stretch: &'a Stretch,
+        noise: &'a [Vector3<f64>],
+        terms: &'a Terms,
+        tests: &'a TestFunctions,
+    ) -> Self {
+        let groups: Vec<Range<usize>> = ranges(stretch, tests.radius, 0).collect();
+        let half = if noise.len() > LONG { noise.len() / 2 } else { 0 };
+        let middle = groups.partition_point(|range| range.start < half);
+        let first = groups.get(middle).filter(|_| middle > 0).map(|range| stretch.times[range.start]);
+        let split = first.map_or(0, |first| tests.at(first).start);
+        OfRates { stretch, noise, tests, maker: Maker::new(terms), groups, middle, split }
+    }
+
+    /// The whole.
+    fn all(&self) -> Banded {
+        let mut sum = Banded::zeros(3 * self.tests.count, 3 * self.tests.reach + 2);
+        // the halves of a long stretch side by side, whatever the machine is
+        let [mut before, mut after] = sum.split_mut(3 * self.split);
+        both(
+            self.split > 0,
+            || self.add(&mut before, 0..self.split),
+            || self.add(&mut after, self.split..self.tests.count),
+        );
+        sum
+    }
+
+    /// The columns of some tests.
+    fn of(&self, own: Range<usize>) -> Banded {
+        let mut sum = Banded::zeros(3 * own.len(), 3 * self.tests.reach + 2);
+        self.add(&mut sum.numbered_from(3 * own.start), own);
+        sum
+    }
+
+    /// Adds up the columns of some tests. Each has the groups of the second half before those of the first, whatever is asked for.
+    fn add(&self, sum: &mut Columns<'_>, own: Range<usize>) {
+        let seen = |sample: usize| self.tests.at(self.stretch.times[sample]);
+        let (first, second) = self.groups.split_at(self.middle);
+        for groups in [second, first] {
+            let from = groups.partition_point(|range| seen(range.end - 1).end <= own.start);
+            let groups = groups[from..].iter().take_while(|range| seen(range.start).start < own.end);
+            for range in groups {
+                let group = group(self.stretch, self.noise, range.clone());
+                add_pairs(sum, self.tests, own.clone(), group.time, &self.maker.products(&group));
             }
         }
-        beyond
-    };
-    let second = || {
-        for range in ranges(middle) {
-            let own = group(stretch, noise, range);
-            add_pairs(&mut after, tests, own.time, &maker.products(&own));
-        }
-    };
-    let (beyond, ()) = both(long, first, second);
-    let [mut all, _] = sum.split_mut(3 * tests.count);
-    for range in beyond {
-        let own = group(stretch, noise, range);
-        add_pairs(&mut all, tests, own.time, &maker.products(&own));
     }
-    sum
 }
 
 /// J J, J Kᵀ and K Kᵀ of a group of samples.
@@ -261,13 +311,20 @@ fn repeated(m: &Matrix3<f64>, column: usize) -> [f64; ROWS] {
     all
 }
 
-/// Adds A Aᵀ of a group of samples at `time`.
+/// Adds A Aᵀ of a group of samples at `time` to the columns of some tests.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+fma", "x86_64+avx2+fma"))]
-fn add_pairs(sum: &mut Columns<'_>, tests: &TestFunctions, time: f64, products: &Products) {
+fn add_pairs(
+    sum: &mut Columns<'_>,
+    tests: &TestFunctions,
+    own: Range<usize>,
+    time: f64,
+    products: &Products,
+) {
     let Products { jj, jk, kk } = products;
     let kj = jk.transpose();
     let seen = Seen::new(tests, time);
     let rows = 3 * seen.count;
+    let [start, end] = [own.start, own.end].map(|test| test.saturating_sub(seen.first).min(seen.count));
     // the blocks of all tests in a column of this one: one multiplies its φ', the other its φ
     let (mut slopes, mut values) = ([0.0; ROWS], [0.0; ROWS]);
     let of_tests = seen.slope.iter().zip(&seen.value).take(seen.count);
@@ -283,7 +340,7 @@ fn add_pairs(sum: &mut Columns<'_>, tests: &TestFunctions, time: f64, products: 
             by_slope[k] = kj[k] * values[k] - jj[k] * slopes[k];
             by_value[k] = kk[k] * values[k] - jk[k] * slopes[k];
         }
-        for row in 0..seen.count {
+        for row in start..end {
             let (c, d) = (seen.slope[row], seen.value[row]);
             let from = 3 * row + q;
             // whole registers: behind the last row stand zeros; tests that only touch add nothing

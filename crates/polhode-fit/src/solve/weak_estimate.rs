@@ -10,7 +10,7 @@ use crate::columns::column::{Column, Unknowns};
 use crate::physical::coordinates::{Coordinates, Form, eigen, pair, tensor};
 use crate::physical::law::LARGEST_SHARE;
 use crate::signal::banded::Forward;
-use crate::signal::covariance::{Covariance, Levels};
+use crate::signal::covariance::{Covariance, Levels, Whites};
 use crate::signal::stretch::Stretch;
 use crate::solve::driven::Driven;
 use crate::solve::linearised::{Linearised, last_column, residuals};
@@ -80,24 +80,41 @@ impl Part {
         mut take: impl FnMut(&[f64]),
     ) -> Option<()> {
         let Linearised { tests, terms, .. } = &self.linearised;
-        let factor = self.covariance(stretch).into_factor(self.levels)?;
-        let residuals = || self.residuals_with(stretch, columns, at);
-        let driven = Driven::new(residuals, columns, &terms.j, &factor, self.levels, tests);
+        // of torque noise all residuals tell what it does to each row; without it the covariance is made as it is asked for
+        let is_driven = self.levels.torque > 0.0;
+        let covariance = is_driven.then(|| self.covariance(stretch));
+        let factor = match covariance {
+            Some(covariance) => Some(covariance.into_factor(self.levels)?),
+            None => None,
+        };
+        let driven = factor.as_ref().and_then(|factor| {
+            let residuals = || self.residuals_with(stretch, columns, at);
+            Driven::new(residuals, columns, &terms.j, factor, self.levels, tests)
+        });
+        let whites = Whites::new(stretch, &self.noise, terms, tests, self.levels.white);
         let rows = Rows::new(stretch, &self.noise, columns, at, tests);
-        let mut white = Forward::new(&factor, columns.len() + 6);
+        let mut white = Forward::default();
         let mut blocks = (0..tests.count).step_by(together);
         let mut following = || {
             let first = blocks.next()?;
-            Some((first, rows.of(first..tests.count.min(first + together))))
+            let own = first..tests.count.min(first + together);
+            let columns = match &factor {
+                Some(factor) => factor.columns(3 * own.start..3 * own.end),
+                None => whites.of(own.clone()),
+            };
+            Some((own.clone(), columns, rows.of(own)))
         };
         let mut next = following();
-        while let Some((first, mut own)) = next {
+        while let Some((own, columns, mut block)) = next {
             let whiten = || {
-                driven.iter().for_each(|driven| driven.take_out(&mut own, first));
-                take(white.solved(&own));
+                driven.iter().for_each(|driven| driven.take_out(&mut block, own.start));
+                let whitened = white.solved(&columns, is_driven, &block, own.end == tests.count);
+                whitened.map(&mut take)
             };
             // in a long stretch those after them are made beside that
-            (next, ()) = both(self.noise.len() > LONG, &mut following, whiten);
+            let whitened;
+            (next, whitened) = both(self.noise.len() > LONG, &mut following, whiten);
+            whitened?;
         }
         Some(())
     }
