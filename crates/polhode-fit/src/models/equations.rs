@@ -6,6 +6,7 @@ use crate::columns::sets::torque_columns;
 use crate::models::MODELS;
 use crate::settings::torque::TorqueModel;
 use crate::signal::stretch::Stretch;
+use crate::solve::blocks::TOGETHER;
 use crate::solve::linearised::residuals;
 use crate::solve::stacked::{SmallTriangle, Stacked, small_triangle};
 use crate::solve::triangle::Triangle;
@@ -21,9 +22,6 @@ pub(crate) struct Equations {
     segments: Vec<Segment>,
     deviation: f64,
 }
-
-/// Tests whose rows are made and brought to a triangle together, so that all of them stand in the cache.
-const TOGETHER: usize = 1024;
 
 /// The equations of a segment.
 struct Segment {

@@ -523,7 +523,9 @@ mod tests {
         }
         // the last pivot is zero
         let mut singular = Banded::zeros(2, 1);
-        [(0, 0), (1, 0), (1, 1)].map(|(i, j)| singular.add(i, j, 1.0));
+        for (i, j) in [(0, 0), (1, 0), (1, 1)] {
+            singular.add(i, j, 1.0);
+        }
         assert!(Forward::default().solved(&singular, false, &[1.0, 1.0], true).is_none());
     }
 

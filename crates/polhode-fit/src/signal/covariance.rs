@@ -395,6 +395,31 @@ mod tests {
         assert_eq!(covariance.likelihoods(&e, &[]), [None; REGISTER]);
     }
 
+    /// The columns of some tests are to the last bit what they are among those of all, also where the halves of a long stretch meet.
+    #[test]
+    fn columns_of_some_tests_are_those_among_all() {
+        let mut random = Random::new(8);
+        let count = LONG + 50;
+        let times: Vec<f64> = (0..count).map(|k| 0.02 * k as f64).collect();
+        let stretch = Stretch::new(times, (0..count).map(|_| random.normal_vector()).collect());
+        let noise: Vec<Vector3<f64>> = (0..count).map(|_| random.normal_vector() * 0.01).collect();
+        let tests = TestFunctions::new(&stretch, 1.0).unwrap();
+        let terms = Terms::at(Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45));
+        let all = Covariance::new(&stretch, &noise, &terms, &tests).noise;
+        let whites = Whites::new(&stretch, &noise, &terms, &tests, 2.0);
+        assert!((tests.count / 3..2 * tests.count / 3).contains(&whites.rates.split));
+        for together in [1500, tests.count] {
+            for first in (0..tests.count).step_by(together) {
+                let own = first..tests.count.min(first + together);
+                let found = whites.of(own.clone());
+                for j in 3 * own.start..3 * own.end {
+                    let column = found.column(j - 3 * own.start);
+                    assert!(column.iter().zip(all.column(j)).all(|(a, b)| *a == 2.0 * b), "{j}");
+                }
+            }
+        }
+    }
+
     /// Both shapes of torque noise are one at a sphere; a body of unequal moments turns by torques that are alike by the mean of its inverses.
     #[test]
     fn torque_noise_of_both_shapes_is_alike_at_a_sphere() {

@@ -1,5 +1,7 @@
 //! The weak equations of one stretch, linearised.
 
+use core::ops::Range;
+
 use crate::solve::rows::rows;
 use multiversion::multiversion;
 use nalgebra::{Matrix3, Vector3};
@@ -8,11 +10,12 @@ use polhode::record::both;
 use crate::columns::column::{Column, Unknowns, terms_of};
 use crate::physical::coordinates::{Form, basis};
 use crate::signal::banded::Banded;
-use crate::signal::covariance::{Covariance, Levels};
+use crate::signal::covariance::{Covariance, Levels, Whites};
 use crate::signal::moments::groups;
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::{Terms, cross_derivative, slope};
 use crate::signal::test_functions::{Blocks, Seen, TestFunctions};
+use crate::solve::blocks::{TOGETHER, whitened};
 use crate::solve::driven::Driven;
 use crate::thresholds::radius::LONG;
 use crate::thresholds::rounds::BESIDE;
@@ -93,6 +96,19 @@ impl Linearised {
         self.whiten(rows, factor, levels, driven)
     }
 
+    /// Its rows whitened by the noise of the rates alone; of the covariance nothing is kept.
+    pub(crate) fn whitened_by_rates(&self, stretch: &Stretch, noise: &[Vector3<f64>]) -> Option<Vec<f64>> {
+        let whites = Whites::new(stretch, noise, &self.terms, &self.tests, 1.0);
+        let own = |tests: Range<usize>| {
+            let rows = &self.rows[3 * tests.start * self.width..3 * tests.end * self.width];
+            (whites.of(tests), rows.to_vec())
+        };
+        let mut all = Vec::with_capacity(self.rows.len());
+        let take = |rows: &[f64]| all.extend_from_slice(rows);
+        whitened(self.tests.count, TOGETHER, false, own, take)?;
+        Some(all)
+    }
+
     fn whiten(
         &self,
         mut rows: Vec<f64>,
@@ -162,13 +178,16 @@ impl Whitened {
         at: &Unknowns,
         share: f64,
     ) {
-        let mut multipliers = self.residuals(&part.origin, at);
-        self.factor.backward(&mut multipliers);
-        let by_axis = [0, 1, 2].map(|axis| {
-            let mut own = part.tests.room();
-            own.iter_mut().zip(multipliers.iter().skip(axis).step_by(3)).for_each(|(own, l)| *own = *l);
-            own
-        });
+        let by_axis = {
+            let mut multipliers = self.residuals(&part.origin, at);
+            self.factor.backward(&mut multipliers);
+            [0, 1, 2].map(|axis| {
+                let mut own = part.tests.room();
+                let each = multipliers.iter().skip(axis).step_by(3);
+                own.iter_mut().zip(each).for_each(|(own, l)| *own = *l);
+                own
+            })
+        };
         // the halves of a long stretch side by side, whatever the machine is
         let long = noise.len() > LONG;
         let (before, after) = noise.split_at_mut(if long { noise.len() / 2 } else { 0 });

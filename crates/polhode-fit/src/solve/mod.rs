@@ -20,6 +20,7 @@
 //! | V | what the noise in G adds to H at raw samples, in expectation and in units of 1/σ² |
 //! | D | Dᵀ D is what errors of the mean rates may add to H where nothing but their mean stands out of the noise |
 
+pub(crate) mod blocks;
 pub(crate) mod completed;
 pub(crate) mod driven;
 pub(crate) mod held;

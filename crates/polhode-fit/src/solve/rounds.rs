@@ -192,7 +192,11 @@ impl<'a> Rounds<'a> {
     }
 
     pub(crate) fn stack(&self, whitened: &[Whitened], variance: f64) -> Stacked {
-        let rows: Vec<&[f64]> = whitened.iter().map(|w| w.rows.as_slice()).collect();
+        self.stack_rows(whitened.iter().map(|w| w.rows.as_slice()), variance)
+    }
+
+    fn stack_rows<'b>(&self, rows: impl Iterator<Item = &'b [f64]>, variance: f64) -> Stacked {
+        let rows: Vec<&[f64]> = rows.collect();
         match self.at.x == Coordinates::zeros() {
             true => Stacked::new(&rows, &self.columns_at_sphere(), &self.at, variance.sqrt()),
             false => Stacked::new(&rows, self.columns, &self.at, variance.sqrt()),
@@ -349,16 +353,24 @@ impl<'a> Rounds<'a> {
     }
 
     pub(crate) fn finish(self, variance: f64, moved: f64) -> Option<WeakEstimate> {
-        let (parts, covariances) = self.with_covariances();
-        let (mut whitened, mut determinants) = (Vec::new(), Vec::new());
-        for ((part, covariance), levels) in parts.iter().zip(covariances).zip(&self.levels) {
-            let white = (*levels != Levels::WHITE).then(|| covariance.factor(Levels::WHITE));
-            let driven = self.driven.then_some(self.columns);
-            let own = part.whitened(covariance.into_factor(*levels)?, *levels, driven);
-            determinants.push(white.map_or(0.0, |white| own.log_determinant_over(white.as_ref())));
-            whitened.push(own);
+        let (mut parts, mut whitened, mut determinants) = (Vec::new(), Vec::new(), Vec::new());
+        for (((_, s, tests), noise), levels) in self.used.iter().zip(&self.noise).zip(&self.levels) {
+            let part = Linearised::new(s, noise, self.columns, self.at.clone(), tests.clone());
+            let (rows, determinant) = if *levels == Levels::WHITE {
+                (part.whitened_by_rates(s, noise)?, 0.0)
+            } else {
+                let covariance = part.covariance(s, noise);
+                let white = covariance.factor(Levels::WHITE);
+                let driven = self.driven.then_some(self.columns);
+                let own = part.whitened(covariance.into_factor(*levels)?, *levels, driven);
+                let determinant = own.log_determinant_over(white.as_ref());
+                (own.rows, determinant)
+            };
+            parts.push(part);
+            whitened.push(rows);
+            determinants.push(determinant);
         }
-        let stacked = self.stack(&whitened, variance);
+        let stacked = self.stack_rows(whitened.iter().map(Vec::as_slice), variance);
         let best = self.pull.as_ref().map_or_else(|| stacked.minimiser(), |pull| stacked.pulled(pull));
         let at = best.unwrap_or_else(|| self.at.clone());
         // the rounds have taken the noise out of G, but for the three numbers by which each motion starts: where it
@@ -370,11 +382,11 @@ impl<'a> Rounds<'a> {
         let (root, doubt) =
             if stands_out { (stacked.root, Form::zeros()) } else { self.constant_rates(variance)? };
         let radius = self.used.first()?.2.radius;
-        let each = self.used.into_iter().zip(parts).zip(whitened).zip(determinants).zip(self.noise);
-        let each = each.map(|(((((k, _, _), mut linearised), whitened), log_determinant), noise)| {
+        let each = self.used.into_iter().zip(parts).zip(whitened).zip(determinants);
+        let each = each.zip(self.levels).zip(self.noise);
+        let each = each.map(|((((((k, ..), mut linearised), rows), log_determinant), levels), noise)| {
             let left = linearised.residuals(&at);
             linearised.rows = Vec::new();
-            let Whitened { levels, rows, .. } = whitened;
             Part { stretch: k, linearised, rows, left, levels, log_determinant, noise }
         });
         let parts = each.collect();
@@ -414,7 +426,7 @@ impl<'a> Rounds<'a> {
 
     /// By how much the sphere leaves more of the first equations of the longest stretch than the tensor does; zero where that has none so
     /// short.
-    fn gain_of_part(&self, whitened: &[Whitened], variance: f64) -> f64 {
+    fn gain_of_part(&self, whitened: &[Vec<f64>], variance: f64) -> f64 {
         let longest = self.used.iter().zip(whitened).max_by_key(|((_, s, _), _)| s.times.len());
         let Some(((k, stretch, tests), own)) = longest else { return 0.0 };
         let head = stretch.head(PART.min(stretch.times.len() / FIRST));
@@ -422,8 +434,9 @@ impl<'a> Rounds<'a> {
         let part = 3 * tests.count;
         let of_sphere = self.squares_of_sphere(&[(*k, &head, tests)], variance);
         // rows are whitened by those before them alone
-        let rows = own.rows.chunks_exact(own.width).take(part);
-        let of_tensor: f64 = rows.map(|row| row[own.width - 1] * row[own.width - 1]).sum();
+        let width = self.columns.len() + 6;
+        let rows = own.chunks_exact(width).take(part);
+        let of_tensor: f64 = rows.map(|row| row[width - 1] * row[width - 1]).sum();
         of_sphere.map_or(0.0, |of_sphere| of_sphere - of_tensor)
     }
 
@@ -585,8 +598,9 @@ mod tests {
         let of = |x: Coordinates, radius: f64| {
             let rounds = Rounds::new(&stretches, radius, &[], Unknowns { x, c: Vec::new() }).unwrap();
             let (_, whitened) = rounds.whiten().unwrap();
-            let part = whitened[0].rows.chunks_exact(6).take(39);
-            (rounds.gain_of_part(&whitened, 1e-4), part.map(|row| row[5] * row[5]).sum::<f64>())
+            let rows: Vec<Vec<f64>> = whitened.into_iter().map(|own| own.rows).collect();
+            let part = rows[0].chunks_exact(6).take(39);
+            (rounds.gain_of_part(&rows, 1e-4), part.map(|row| row[5] * row[5]).sum::<f64>())
         };
         let (none, of_sphere) = of(Coordinates::zeros(), 1.0);
         assert!(none.abs() < 0.05 * of_sphere, "{none:e} {of_sphere:e}");

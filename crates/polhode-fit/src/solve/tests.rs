@@ -346,10 +346,13 @@ fn whitened_blocks_are_those_of_the_whole() {
     for kept in [1, 2] {
         let mut example = Example::new();
         example.at.c.iter_mut().enumerate().filter(|(k, _)| k % kept > 0).for_each(|(_, c)| *c = 0.0);
-        for levels in [Levels::WHITE, NOISY, Levels { shape: Shape::Alike, ..NOISY }] {
+        let louder = Levels { white: 1.7, ..Levels::WHITE };
+        for levels in [Levels::WHITE, louder, NOISY, Levels { shape: Shape::Alike, ..NOISY }] {
             let factor = example.covariance().into_factor(levels).unwrap();
             let linearised = example.linearised();
             let expected = linearised.whitened(factor, levels, Some(&example.columns)).rows;
+            let by_rates = linearised.whitened_by_rates(&example.stretch, &example.noise).unwrap();
+            assert_eq!(by_rates == expected, levels == Levels::WHITE);
             let (noise, rows, left) = (example.noise.clone(), Vec::new(), Vec::new());
             let part = Part { stretch: 0, linearised, rows, left, levels, log_determinant: 0.0, noise };
             for together in [1, 5, example.tests.count] {

@@ -3,21 +3,20 @@
 use crate::thresholds::noise::DEVIATIONS;
 use crate::thresholds::rounds::{BEYOND, RESTLESS, STILL};
 use crate::thresholds::stacked::ITERATIONS;
+use core::ops::Range;
 use nalgebra::Vector3;
-use polhode::record::both;
 
 use crate::columns::column::{Column, Unknowns};
 use crate::physical::coordinates::{Coordinates, Form, eigen, pair, tensor};
 use crate::physical::law::LARGEST_SHARE;
-use crate::signal::banded::Forward;
 use crate::signal::covariance::{Covariance, Levels, Whites};
 use crate::signal::stretch::Stretch;
+use crate::solve::blocks::whitened;
 use crate::solve::driven::Driven;
 use crate::solve::linearised::{Linearised, last_column, residuals};
 use crate::solve::rows::{Rows, rows};
 use crate::solve::stacked::Stacked;
 use crate::thresholds::noise::SURE;
-use crate::thresholds::radius::LONG;
 
 /// How near rounds ended to a fixed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,15 +76,13 @@ impl Part {
         columns: &[Column],
         at: &Unknowns,
         together: usize,
-        mut take: impl FnMut(&[f64]),
+        take: impl FnMut(&[f64]),
     ) -> Option<()> {
         let Linearised { tests, terms, .. } = &self.linearised;
-        // of torque noise all residuals tell what it does to each row; without it the covariance is made as it is asked for
-        let is_driven = self.levels.torque > 0.0;
-        let covariance = is_driven.then(|| self.covariance(stretch));
-        let factor = match covariance {
-            Some(covariance) => Some(covariance.into_factor(self.levels)?),
-            None => None,
+        // of torque noise all residuals tell what it does to each row; without it nothing of the covariance is kept
+        let factor = match self.levels.torque > 0.0 {
+            true => Some(self.covariance(stretch).into_factor(self.levels)?),
+            false => None,
         };
         let driven = factor.as_ref().and_then(|factor| {
             let residuals = || self.residuals_with(stretch, columns, at);
@@ -93,30 +90,16 @@ impl Part {
         });
         let whites = Whites::new(stretch, &self.noise, terms, tests, self.levels.white);
         let rows = Rows::new(stretch, &self.noise, columns, at, tests);
-        let mut white = Forward::default();
-        let mut blocks = (0..tests.count).step_by(together);
-        let mut following = || {
-            let first = blocks.next()?;
-            let own = first..tests.count.min(first + together);
+        let made = |own: Range<usize>| {
+            let mut block = rows.of(own.clone());
+            driven.iter().for_each(|driven| driven.take_out(&mut block, own.start));
             let columns = match &factor {
                 Some(factor) => factor.columns(3 * own.start..3 * own.end),
-                None => whites.of(own.clone()),
+                None => whites.of(own),
             };
-            Some((own.clone(), columns, rows.of(own)))
+            (columns, block)
         };
-        let mut next = following();
-        while let Some((own, columns, mut block)) = next {
-            let whiten = || {
-                driven.iter().for_each(|driven| driven.take_out(&mut block, own.start));
-                let whitened = white.solved(&columns, is_driven, &block, own.end == tests.count);
-                whitened.map(&mut take)
-            };
-            // in a long stretch those after them are made beside that
-            let whitened;
-            (next, whitened) = both(self.noise.len() > LONG, &mut following, whiten);
-            whitened?;
-        }
-        Some(())
+        whitened(tests.count, together, factor.is_some(), made, take)
     }
 
     /// The residuals of the same samples with other columns. Those that are zero do not change them.
