@@ -86,7 +86,7 @@ impl Linearised {
     }
 
     /// The same in the place of its rows, which nobody asks for any more.
-    pub(crate) fn into_whitened(
+    pub(crate) fn take_whitened(
         &mut self,
         factor: Banded,
         levels: Levels,

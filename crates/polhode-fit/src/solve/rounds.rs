@@ -180,7 +180,7 @@ impl<'a> Rounds<'a> {
         let each = parts.iter_mut().zip(covariances).zip(&self.levels);
         let whitened = each.map(|((part, covariance), levels)| {
             let factor = covariance.into_factor(*levels)?;
-            Some(part.into_whitened(factor, *levels, self.driven.then_some(self.columns)))
+            Some(part.take_whitened(factor, *levels, self.driven.then_some(self.columns)))
         });
         let whitened = whitened.collect::<Option<_>>()?;
         Some((parts, whitened))
