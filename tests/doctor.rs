@@ -252,7 +252,7 @@ fn messages_say_law_margin_and_remedy() {
     assert_eq!(found.violation, None);
     // a homogeneous box fills a third of what the extents allow
     assert!((found.misfit.unwrap().ratio - 1e6 / 3.0).abs() < 1e-9 * 1e6);
-    assert_eq!(found.causes[0].cause.to_string(), "in kg mm^2, not in kg m^2: to be multiplied by 1e-6");
+    assert_eq!(found.causes[0].cause.to_string(), "in kg mm^2, not in kg m^2: multiply by 1e-6");
     let skew = Matrix3::new(2.0, 0.5, 0.0, -0.5, 2.0, 0.0, 0.0, 0.0, 3.0);
     let found = diagnose(skew, &Evidence::default()).unwrap();
     assert!(
@@ -260,7 +260,7 @@ fn messages_say_law_margin_and_remedy() {
     );
     assert_eq!(
         found.causes[0].cause.to_string(),
-        "of the pair I_xy the one below the diagonal is wrong, the one above is right"
+        "the two entries I_xy differ: the one below the diagonal is wrong, the one above it is right"
     );
     assert_eq!(found.distance, 0.5_f64.sqrt());
     let error = |tensor: Matrix3<f64>, evidence| diagnose(tensor, &evidence).unwrap_err().to_string();

@@ -511,7 +511,7 @@ fn what_is_wrong_for_all_is_refused_at_once() {
         |clock, steps: &[u64]| ensemble.advance(&rk4, clock, steps, none).map_err(refused).unwrap_err();
     assert_eq!(
         advance(Clock::new(0.1), &[5, 4]),
-        "4 steps stand behind 5; numbers of steps are given in ascending order"
+        "4 steps follow 5; give numbers of steps in ascending order"
     );
     assert_eq!(
         advance(Clock::new(0.0), &[5]),

@@ -504,11 +504,11 @@ fn parameters_that_no_force_has_are_refused() {
     let refused = |result: Result<Force, ForceError>| result.map(|_| ()).unwrap_err().to_string();
     assert_eq!(
         refused(Force::drag(-0.1, 0.0)),
-        "c1 of the drag is -0.1; drag takes energy from the body, so its coefficients are at least 0: change the sign"
+        "c1 of the drag is -0.1; drag takes energy from the body, so its coefficients must not be negative: change the sign"
     );
     assert_eq!(
         refused(Force::gravity_gradient(0.001, 1.0)),
-        "the eccentricity is 1; that of an elliptic orbit is in [0, 1), and 0 is a circle; a parabola or a hyperbola is given by its least distance"
+        "the eccentricity is 1; that of an elliptic orbit is in [0, 1), and 0 is a circle; give a parabola or a hyperbola by its periapsis distance"
     );
     assert!(Force::gravity_gradient(0.001, -0.1).is_err());
     assert!(Force::gravity_gradient(0.001, f64::NAN).is_err());

@@ -238,8 +238,8 @@ fn wheels_that_no_body_can_carry_are_refused_with_the_law() {
     let refused = moments.clone().with_wheel(wheel([1.0, 0.0, 0.0], 0.6, 1.0)).unwrap_err();
     assert_eq!(
         refused.to_string(),
-        "the wheel's inertia of 0.6 kg m^2 does not fit into that of body and wheels together, which is 1 kg m^2 about its axis; \
-         without it: principal moments 0.4, 2, 2.5 violate I1 + I2 >= I3 by 0.1 (4.000 % of the largest); no mass distribution has them"
+        "the wheel's inertia of 0.6 kg m^2 is too large for that of body and wheels together, 1 kg m^2 about its axis; \
+         without the wheel: principal moments 0.4, 2, 2.5 violate I1 + I2 >= I3 by 0.1 (4.000 % of the largest); no mass distribution has them"
     );
     assert!(matches!(refused, WheelError::TooLarge { .. }));
     // two that fit alone do not fit together
@@ -350,7 +350,7 @@ fn members_of_an_ensemble_have_the_bits_of_runs_with_wheels_of_their_own() {
     let mut motor = Ensemble::new().carrying(told.to_vec());
     motor.push_omega(&inertia(0), UnitQuaternion::identity(), OMEGA);
     let read = |rows: &Rows| {
-        let refused = rows.failures().all(|(_, _, error)| error.to_string().contains("while no motor works"));
+        let refused = rows.failures().all(|(_, _, error)| error.to_string().contains("while no motor acts"));
         failures += usize::from(refused && rows.failures().count() == 1);
         Ok::<(), EnsembleError>(())
     };
@@ -484,6 +484,6 @@ fn what_has_no_closed_form_with_wheels_says_why() {
     let driven = body(&[wheel([0.0, 0.0, 1.0], 0.1, 5.0).driven(0.4, [0.0, f64::INFINITY], OMEGA).unwrap()]);
     assert!(matches!(refused(&driven), NoClosedForm::Motor { torque: 0.4, .. }));
     let dragged = held().with(Force::drag(0.1, 0.0).unwrap());
-    assert!(refused(&dragged).to_string().starts_with("drag acts on the body; a closed form is known here"));
+    assert!(refused(&dragged).to_string().starts_with("drag acts on the body; closed forms are available"));
     assert!(matches!(refused(&body(&[])), NoClosedForm::Forced { .. }));
 }

@@ -181,9 +181,9 @@ fn a_population_without_bodies_says_so() {
     let error = with_inertia(Tensors::Moments { axes: body, moments }).member(1, 0).unwrap_err();
     assert_eq!(error.draws, 10_000);
     assert!(
-        error
-            .to_string()
-            .contains("no body has any of 10000 tensors that were drawn; the last: principal moments 1.0"),
+        error.to_string().contains(
+            "none of 10000 tensors drawn is that of a physical body; the last: principal moments 1.0"
+        ),
         "{error}"
     );
 }

@@ -190,7 +190,7 @@ fn orders_and_tolerances_that_there_are_not_are_refused() {
         assert_eq!(
             error,
             format!(
-                "method {name:?} has an argument that it cannot take; allowed: an order from 8 to 40, such as taylor:20, or a \
+                "method {name:?} cannot take this argument; allowed: an order from 8 to 40, such as taylor:20, or a \
                  tolerance from 1.2e-16, as the rounding of a double is 1.1e-16, to 1e-3, such as taylor:1e-12"
             )
         );
@@ -201,7 +201,7 @@ fn orders_and_tolerances_that_there_are_not_are_refused() {
     );
     assert_eq!(
         polhode::method::AdaptiveTaylor::of_tolerance(1e-20).unwrap_err().to_string(),
-        "1e-20 is no tolerance of taylor; it must be from 1.2e-16, as the rounding of a double is 1.1e-16, to 1e-3"
+        "the tolerance 1e-20 of taylor must be from 1.2e-16, as the rounding of a double is 1.1e-16, to 1e-3"
     );
     for name in ["taylor", "taylor:8", "taylor:40", "taylor:1e-12", "taylor:1e-3", "taylor:1.2e-16"] {
         assert_eq!(method(name).unwrap().name(), name);
@@ -220,7 +220,7 @@ fn closures_are_refused_and_singular_laws_end_a_run() {
             error.to_string(),
             format!(
                 "method {name:?} cannot take thruster, a closure in f64: it evaluates laws on power series; write the law for \
-                 every Real, or take rk4 or, for a potential, kick-drift"
+                 every Real, or use rk4 or, for a potential, kick-drift"
             )
         );
     }

@@ -401,12 +401,12 @@ fn a_body_that_is_no_lagrange_top_is_refused_with_the_condition_and_its_size() {
     assert_eq!(refusal([1.0, 1.0, 0.5], [0.0; 3]), LagrangeError::Free);
     assert_eq!(
         refusal([1.0, 1.5, 2.0], [0.0, 0.0, 1.0]).to_string(),
-        "principal moments 1, 1.5, 2: no two agree, the closest differ by 1.111e-1 of their sum (at most 1e-12); \
-         a Lagrange top is symmetric"
+        "principal moments 1, 1.5, 2: a Lagrange top has two equal ones; here the closest differ by 1.111e-1 of their sum (at \
+         most 1e-12 is allowed)"
     );
     assert_eq!(
         refusal([1.0, 1.0, 0.5], [0.0, 1e-3, 1.0]).to_string(),
-        "the weight moment is 1.000e-3 rad off the symmetry axis (at most 1e-12); a Lagrange top has it on the axis"
+        "the weight moment is 1.000e-3 rad away from the symmetry axis (at most 1e-12 is allowed); that of a Lagrange top lies on the axis"
     );
     let body = Body::heavy(Inertia::from_moments([1.0, 1.0, 1.5]).unwrap(), [0.0, 0.0, 1.0].into()).unwrap();
     let top = LagrangeTop::from_omega(&body, Default::default(), [1.0, 2.0, 3.0].into()).unwrap();

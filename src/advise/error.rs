@@ -30,7 +30,7 @@ pub enum AdviseError {
     },
     /// An energy error of a motion that does not conserve energy.
     #[error(
-        "the torques on the body, or the motor of a wheel, do not conserve its energy, so that no energy error can be limited; leave it out"
+        "the torques on the body, or the motor of a wheel, do not conserve its energy, so that no energy error can be limited; leave the energy error out"
     )]
     NotConserved,
     /// The start is not usable.
@@ -38,8 +38,8 @@ pub enum AdviseError {
     State(#[from] StateError),
     /// An energy error that no state in doubles has.
     #[error(
-        "a relative energy error of {demand:.1e} is below rounding: that of the angular momentum to doubles alone changes the \
-         energy by up to {:.1e}; ask for more than that",
+        "a relative energy error of {demand:.1e} is below rounding: to round the angular momentum to doubles changes the energy \
+         by up to {:.1e}; ask for more than that",
         f64::EPSILON
     )]
     EnergyBelowRounding {
@@ -81,8 +81,8 @@ pub enum AdviseError {
     },
     /// No candidate meets the demand.
     #[error(
-        "no method meets {demand:.1e} rad; the nearest is {method} with {error:.1e} rad, and up to {SAME_RUN} times that \
-         between the times looked at, until t = {} s", Shown(*until)
+        "no method meets {demand:.1e} rad until t = {} s; the best is {method} with {error:.1e} rad, and up to {SAME_RUN} times \
+         that between the times that were checked", Shown(*until)
     )]
     Unreached {
         /// What was asked for, rad.
@@ -96,8 +96,8 @@ pub enum AdviseError {
     },
     /// No candidate meets the demand on the energy.
     #[error(
-        "no method meets a relative energy error of {demand:.1e}; the nearest is {method} with {error:.1e}, and up to \
-         {SAME_RUN} times that between the times looked at, until t = {} s", Shown(*until)
+        "no method meets a relative energy error of {demand:.1e} until t = {} s; the best is {method} with {error:.1e}, and up \
+         to {SAME_RUN} times that between the times that were checked", Shown(*until)
     )]
     EnergyUnreached {
         /// What was asked for.
@@ -146,9 +146,9 @@ pub enum AdviseError {
     },
     /// The torque jumps, and runs that choose their steps would take too long.
     #[error(
-        "the torque jumps at t = {} s: no method has its order across a jump, and a run that chooses its steps, to be judged by at \
-         {demand:.1e} rad, takes about {steps:.1e} of them, where at most {most:.1e} are taken; end the run there and begin another, \
-         ask for a larger error or a shorter time, or write the torque without jumps",
+        "the torque jumps at t = {} s: no method has its order across a jump, and an adaptive reference run for {demand:.1e} \
+         rad would take about {steps:.1e} steps, more than the {most:.1e} allowed; end the run there and begin another, ask for \
+         a larger error or a shorter time, or write the torque without jumps",
         Shown(*time)
     )]
     LongAcrossJump {
@@ -188,7 +188,7 @@ pub enum AdviseError {
     #[error(transparent)]
     Run(#[from] RunError),
     /// Everything is excluded.
-    #[error("no method is left: those that take the forces on the body are excluded")]
+    #[error("no method is left: all that can take the forces on the body are excluded")]
     NoCandidate,
 }
 

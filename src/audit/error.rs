@@ -18,10 +18,12 @@ pub enum AuditError {
         needed: usize,
     },
     /// Times alone.
-    #[error("the record has times alone; a verdict needs attitudes, angular velocities or angular momenta")]
+    #[error("the record has only times; a verdict needs attitudes, angular velocities or angular momenta")]
     NoColumns,
     /// Columns of different lengths.
-    #[error("the {column} has {found} rows beside {rows} times; every column needs one row for each time")]
+    #[error(
+        "the {column} has {found} rows, and there are {rows} times; every column needs one row for each time"
+    )]
     Lengths {
         /// Which column.
         column: &'static str,
@@ -41,7 +43,7 @@ pub enum AuditError {
         previous: f64,
     },
     /// Numbers without a digit.
-    #[error("the {column} is told to have 0 significant digits; a number has at least one")]
+    #[error("the {column} is declared to have 0 significant digits; declare at least 1")]
     NoDigits {
         /// Which column.
         column: &'static str,
@@ -57,13 +59,13 @@ pub enum AuditError {
         value: f64,
     },
     /// A quaternion or a matrix of zeros.
-    #[error("row {row}: the attitude is zero in every component, which is no attitude")]
+    #[error("row {row}: every component of the attitude is zero, which is not a rotation")]
     NoAttitude {
         /// The row, from 0.
         row: usize,
     },
     /// The tolerance is not usable.
-    #[error("the tolerance is {}; it must be above 0 and at most {}: within more than that nearly anything is", Shown(*value), Shown(*most))]
+    #[error("the tolerance is {}; it must be above 0 and at most {}, as with more nearly any record would pass", Shown(*value), Shown(*most))]
     Tolerance {
         /// What was given.
         value: f64,
@@ -92,28 +94,30 @@ pub enum AuditError {
     #[error("a record of angular momenta needs the body, whose moments turn them into angular velocities")]
     MomentumNeedsBody,
     /// Wheels of a body that is not given.
-    #[error("wheels are told of a body that is not given; give its moments of inertia")]
+    #[error("wheels are given, but no body; give its moments of inertia")]
     WheelsNeedBody,
     /// The body cannot carry the wheels.
     #[error(transparent)]
     Wheel(#[from] WheelError),
     /// Angular momenta of a body with wheels.
     #[error(
-        "a column of angular momenta does not tell whether that of the wheels is in it; leave it out, and record angular velocities"
+        "a column of angular momenta does not show whether it includes that of the wheels; leave it out, and record angular velocities"
     )]
     MomentumOfWheels,
     /// The angular velocity at the first row is not known.
     #[error(
-        "the momentum of a wheel that is free or driven follows from the angular velocity at the first row, which this record does not tell; record angular velocities, or attitudes that turn less from row to row"
+        "the momentum of a free or driven wheel follows from the angular velocity at the first row, which this record does not determine; record angular velocities, or attitudes that turn less from row to row"
     )]
     NoStart,
     /// Nothing turns.
-    #[error("nothing turns in the record: every reading of it is the same")]
+    #[error("nothing turns in the record, so that no convention can be told from another")]
     AtRest,
     /// What is claimed leaves no reading.
-    #[error("no reading of the record is left: what is claimed does not go with its columns")]
+    #[error("the record cannot be read as stated: the stated conventions contradict its columns")]
     NoReading,
     /// The moments cannot be found from the record.
-    #[error("no body moves as the record does, and none is given; give the moments of inertia")]
+    #[error(
+        "no body was given, and none is found that moves as the record does; give the moments of inertia"
+    )]
     NoBody,
 }

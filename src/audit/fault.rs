@@ -118,9 +118,11 @@ impl fmt::Display for Misplaced {
         f.write_str(match self {
             Misplaced::Repeated => "repeats the row before",
             Misplaced::Exchanged => "is exchanged with a neighbour",
-            Misplaced::Shifted => "holds the state of a neighbour, as time stamps that are off by one row do",
-            Misplaced::Interpolated => "is the mean of its neighbours, as interpolated frames are",
-            Misplaced::Unknown => "is not where the motion is",
+            Misplaced::Shifted => {
+                "has the state of a neighbouring row, as if time stamps were shifted by one row"
+            }
+            Misplaced::Interpolated => "is the mean of its neighbours, as if interpolated",
+            Misplaced::Unknown => "deviates from the motion",
         })
     }
 }
@@ -131,7 +133,7 @@ impl fmt::Display for Fault {
             Fault::TooCoarse { angle } => {
                 write!(
                     f,
-                    "the body turns by {angle:.3} rad between rows; sample at least twice as often as it turns by half"
+                    "the body turns by {angle:.3} rad between rows; record so often that it turns by less than pi/2 between them"
                 )
             }
             Fault::TimeJump { row, interval, usual, count } => {
@@ -154,25 +156,25 @@ impl fmt::Display for Fault {
             }
             Fault::NoRotation { row, error, count } => write!(
                 f,
-                "row {row}: what is written is no rotation of the size that the others have, off by {error:.1e} ({count} such rows)"
+                "row {row}: the attitude is not a rotation, even when scaled as the other rows are: off by {error:.1e} ({count} such rows)"
             ),
             Fault::Plateau { row, rows } => write!(
                 f,
                 "row {row}: a component of the angular velocity stays the same over {rows} rows; are rates clamped or held?"
             ),
             Fault::NoBodyFound => f.write_str(
-                "no body is found whose angular velocity this is; give its moments, or record the attitude too",
+                "no body is found that has this angular velocity; give its moments, or record the attitude too",
             ),
             Fault::NotFollowed => f.write_str(
-                "the forces turn the body so far over the record that its motion is not followed: are the units of times, moments and forces those of each other?",
+                "the forces turn the body too far over the record to compute its motion: are the units of times, moments and forces consistent?",
             ),
-            Fault::SinglePrecision => f.write_str("every number is one of single precision; write doubles"),
+            Fault::SinglePrecision => f.write_str("all numbers are of single precision; write doubles"),
             Fault::FewDigits { digits } => {
                 write!(f, "the numbers have {digits} significant digits; write 17")
             }
             Fault::Misplaced { what, row, count, largest } => {
                 let rows = if *count == 1 { String::new() } else { format!(" ({count} such rows)") };
-                write!(f, "row {row}: {what}{rows}; up to {largest:.1e} rad or relative from the motion")
+                write!(f, "row {row}: {what}{rows}; largest deviation from the motion {largest:.1e} (rad or relative)")
             }
             Fault::Discontinuity { row, size, count } => {
                 write!(f, "row {row}: the state jumps by {size:.1e} ({count} such rows)")

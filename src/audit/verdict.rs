@@ -311,16 +311,16 @@ impl fmt::Display for TieReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             TieReason::SymmetricBody => {
-                "moments of inertia agree; record a body with three different moments to tell"
+                "the body has equal moments of inertia; record one with three different moments to tell them apart"
             }
             TieReason::PureSpin => {
-                "the body spins about one axis; record a motion that tumbles, from a tilted attitude, to tell"
+                "the body spins about a fixed axis; record a tumbling motion from a tilted attitude to tell them apart"
             }
-            TieReason::MissingColumns => "the columns allow them all; record attitude and angular velocity to tell",
+            TieReason::MissingColumns => "the columns cannot tell them apart; record both attitude and angular velocity",
             TieReason::Noise => {
-                "noise or digits hide the difference; record more rows, more digits or a faster motion to tell"
+                "noise or missing digits hide the difference; record more rows, more digits or a faster motion"
             }
-            TieReason::Misfit => "the rows are a motion in none of them, and off alike",
+            TieReason::Misfit => "the rows do not obey the equations of motion in any of them, and the errors are about equal",
         })
     }
 }
@@ -331,7 +331,7 @@ impl fmt::Display for OtherBody {
         let which = if self.principal { "principal moments" } else { "moments" };
         write!(
             f,
-            "The motion is that of another body: {which} {a:.6} : {b:.6} : {c:.6}, of the same trace as those given."
+            "The motion is that of another body: {which} {a:.6} : {b:.6} : {c:.6}, scaled to the trace of those given."
         )
     }
 }
@@ -342,7 +342,7 @@ impl fmt::Display for OtherWheel {
         let kind = if *is_held { "held" } else { "not held" };
         write!(
             f,
-            "The motion is that of a body whose wheel number {number} is {kind}, with a speed of {speed:.6} rad/s at the first row."
+            "The motion is that of a body on which wheel {number} is {kind} and has a speed of {speed:.6} rad/s at the first row."
         )
     }
 }
@@ -353,19 +353,19 @@ impl fmt::Display for OtherTorque {
         match (self.factor, self.constant) {
             (Some(factor), _) if factor.abs() < 0.05 => write!(
                 f,
-                "The torque that is told does not act: L changes as if it were 0 (root mean square of what is missing {size:.1e})."
+                "The given torque does not act: L changes as if it were 0 (root mean square of the missing torque {size:.1e})."
             ),
             (Some(factor), _) => {
                 let sign = if factor < 0.0 { ", with the wrong sign" } else { "" };
-                write!(f, "The torque that is told acts {factor:.2} times{sign}.")
+                write!(f, "The torque that acts is {factor:.2} times the given one{sign}.")
             }
             (None, Some((frame, [x, y, z]))) => write!(
                 f,
-                "A torque of about {size:.1e} acts that is not told, constant in {frame} axes: {x:.2e}, {y:.2e}, {z:.2e}, in the unit of the moments times rad/s\u{b2}."
+                "A torque that was not given acts: about {size:.1e}, constant in {frame} axes: {x:.2e}, {y:.2e}, {z:.2e}, in the unit of the moments times rad/s\u{b2}."
             ),
             (None, None) => write!(
                 f,
-                "A torque of about {size:.1e} acts that is not told (root mean square, in the unit of the moments times rad/s\u{b2})."
+                "A torque that was not given acts: about {size:.1e} (root mean square, in the unit of the moments times rad/s\u{b2})."
             ),
         }
     }

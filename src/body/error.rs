@@ -17,7 +17,7 @@ pub enum StateError {
         value: f64,
     },
     /// The quaternion of the attitude is zero.
-    #[error("the attitude is the zero quaternion, which has no direction; any other norm is fine")]
+    #[error("the attitude is the zero quaternion, which is not a rotation; any other norm is accepted")]
     NoAttitude,
     /// The spin is too large or too small for its energy to be a double.
     #[error(
@@ -61,7 +61,7 @@ pub enum ForceError {
     },
     /// A drag coefficient is negative.
     #[error(
-        "{quantity} of the {force} is {}; drag takes energy from the body, so its coefficients are at least 0: change the sign",
+        "{quantity} of the {force} is {}; drag takes energy from the body, so its coefficients must not be negative: change the sign",
         Shown(*value)
     )]
     Negative {
@@ -74,8 +74,8 @@ pub enum ForceError {
     },
     /// The eccentricity is that of no ellipse.
     #[error(
-        "the eccentricity is {}; that of an elliptic orbit is in [0, 1), and 0 is a circle; a parabola or a hyperbola is \
-         given by its least distance",
+        "the eccentricity is {}; that of an elliptic orbit is in [0, 1), and 0 is a circle; give a parabola or a hyperbola by \
+         its periapsis distance",
         Shown(*eccentricity)
     )]
     Eccentricity {
@@ -102,14 +102,14 @@ pub enum ForceError {
         value: f64,
     },
     /// An orbit is run through too fast or too slowly.
-    #[error("the angular velocity at the least distance, {} rad/s, is outside the range of a double", Shown(*rate))]
+    #[error("the angular velocity at the periapsis, {} rad/s, is outside the range of a double", Shown(*rate))]
     RateOutOfRange {
         /// The root of GM over the cube of the least distance, rad/s.
         rate: f64,
     },
     /// A table of an orbit has too few rows.
     #[error(
-        "the table of the orbit has {times} times and {places} places; it needs {needed} of each at least, and as many places as times"
+        "the orbit table has {times} times and {places} positions; it needs at least {needed} of each, and as many positions as times"
     )]
     Rows {
         /// Of times.
@@ -120,7 +120,7 @@ pub enum ForceError {
         needed: usize,
     },
     /// The times of a table do not ascend.
-    #[error("in the table of the orbit {} s comes after {} s; times ascend", Shown(*after), Shown(*before))]
+    #[error("in the orbit table the time {} s follows {} s; times must ascend", Shown(*after), Shown(*before))]
     NotAscending {
         /// The time before, s.
         before: f64,
@@ -129,8 +129,8 @@ pub enum ForceError {
     },
     /// Rows of a table are too far apart.
     #[error(
-        "between {} s and {} s the table of the orbit has a gap: places through eight and through six rows differ by {error:.1e} of the distance; \
-         give rows between them", Shown(*from), Shown(*to)
+        "between {} s and {} s the rows of the orbit table are too far apart: interpolations through eight and six rows differ \
+         by {error:.1e} of the distance; add rows between them", Shown(*from), Shown(*to)
     )]
     Gap {
         /// The row before, s.
@@ -142,7 +142,7 @@ pub enum ForceError {
     },
     /// An interval in which it acts is none.
     #[error(
-        "the interval from {} s to {} s comes after {} s; intervals of a force ascend, and each ends after its beginning",
+        "the interval from {} s to {} s comes after {} s; the intervals of a force must ascend, and each must end after its beginning",
         Shown(*from), Shown(*to), Shown(*before)
     )]
     Interval {

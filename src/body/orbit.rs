@@ -163,7 +163,7 @@ impl Orbit {
             value => Err(ForceError::NotPositive { force: NAME, quantity, value }),
         };
         let (gm, q) =
-            (positive("the gravitational parameter", gm)?, positive("the least distance", periapsis)?);
+            (positive("the gravitational parameter", gm)?, positive("the periapsis distance", periapsis)?);
         let eccentricity = finite(NAME, "the eccentricity", eccentricity)?;
         if eccentricity < 0.0 {
             return Err(ForceError::NoConic { eccentricity });
@@ -223,7 +223,7 @@ impl Orbit {
     /// # Errors
     /// A time that is not finite.
     pub fn passing_at(self, time: f64) -> Result<Self, ForceError> {
-        Ok(Orbit { passage: finite(NAME, "the time of the least distance", time)?, ..self })
+        Ok(Orbit { passage: finite(NAME, "the time of the periapsis", time)?, ..self })
     }
 
     /// The same orbit turned in space: the longitude of the ascending node, the inclination and the argument of the periapsis,

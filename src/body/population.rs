@@ -235,7 +235,7 @@ fn symmetric([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3<f64> {
 
 /// A member that could not be drawn.
 #[derive(Clone, Debug, PartialEq, Error)]
-#[error("no body has any of {draws} tensors that were drawn; the last: {last}")]
+#[error("none of {draws} tensors drawn is that of a physical body; the last: {last}")]
 #[non_exhaustive]
 pub struct NoMember {
     /// How many were drawn.

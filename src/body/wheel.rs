@@ -92,8 +92,8 @@ pub enum WheelError {
     },
     /// The wheel has more inertia than the whole that it is a part of.
     #[error(
-        "the wheel's inertia of {} kg m^2 does not fit into that of body and wheels together, which is {} kg m^2 about its axis; \
-         without it: {rest}", Shown(*inertia), Shown(*about_axis)
+        "the wheel's inertia of {} kg m^2 is too large for that of body and wheels together, {} kg m^2 about its axis; without \
+         the wheel: {rest}", Shown(*inertia), Shown(*about_axis)
     )]
     TooLarge {
         /// Of the wheel about its axis, kg m².

@@ -13,7 +13,7 @@ pub enum EventError {
     #[error(transparent)]
     Time(#[from] TimeError),
     /// The end does not come after the beginning.
-    #[error("events are looked for from {} s to {} s; the end has to come after the beginning", Shown(*from), Shown(*to))]
+    #[error("events are looked for from {} s to {} s; the end must come after the beginning", Shown(*from), Shown(*to))]
     NotAscending {
         /// The beginning, s.
         from: f64,
@@ -21,14 +21,14 @@ pub enum EventError {
         to: f64,
     },
     /// The spacing is not positive.
-    #[error("the spacing of looks is {} s; it must be a positive number", Shown(*spacing))]
+    #[error("the time between looks of the search is {} s; it must be positive", Shown(*spacing))]
     Spacing {
         /// The spacing, s.
         spacing: f64,
     },
     /// More looks than can be taken.
     #[error(
-        "{looks:.1e} looks, {} s apart, are too many: at most {:.0e} are taken; take a larger spacing or a shorter time",
+        "a search with {looks:.1e} looks, {} s apart, is too long: at most {:.0e} are allowed; use a longer time between looks or a shorter time",
         Shown(*spacing), super::along::MOST_LOOKS
     )]
     TooMany {

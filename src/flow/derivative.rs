@@ -24,7 +24,7 @@ pub enum DerivativeError {
     Time(#[from] TimeError),
     /// Next to the separatrix a derivative grows exponentially.
     #[error(
-        "after {t:e} s the derivative by the start has left the range of a double: next to the unstable axis it grows exponentially"
+        "after {t:e} s the derivative with respect to the start exceeds the range of a double: next to the unstable axis it grows exponentially"
     )]
     OutOfRange {
         /// The time, s.

@@ -44,8 +44,8 @@ pub enum NoClosedForm {
     Gyrostat(#[from] GyrostatError),
     /// The motor of a wheel works.
     #[error(
-        "the motor of a wheel works with {} N m from {} s to {} s; a closed form is known while no motor works: take taylor, or begin again \
-         where it ends", Shown(*torque), Shown(*from), Shown(*to)
+        "the motor of a wheel acts with {} N m from {} s to {} s; the closed form holds only while no motor acts: use the \
+         method taylor, or start again where the motor ends", Shown(*torque), Shown(*from), Shown(*to)
     )]
     Motor {
         /// N m.
@@ -57,8 +57,8 @@ pub enum NoClosedForm {
     },
     /// A force acts that leaves no closed form.
     #[error(
-        "{force} acts on the body; a closed form is known here for bodies on which nothing acts, with wheels or without, and for symmetric \
-         tops under gravity"
+        "{force} acts on the body; closed forms are available for free bodies, with or without wheels, and for symmetric tops \
+         under uniform gravity"
     )]
     Forced {
         /// Name of the force.

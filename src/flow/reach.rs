@@ -14,8 +14,8 @@ pub enum TimeError {
     },
     /// The phase has lost its digits.
     #[error(
-        "after {t:e} s the phase has no digits left: it is known to 106 bits, and the body has turned \
-         further than 2^96 rad; times up to {reach:e} s can be answered"
+        "after {t:e} s the phase has too few digits left: it is known to 106 bits, and the body has turned by more than 2^96 \
+         rad; the latest time with an answer is {reach:e} s"
     )]
     OutOfReach {
         /// The time, s.

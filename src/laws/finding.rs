@@ -59,7 +59,7 @@ impl Finding {
             _ if measured < holds => (Verdict::Unclaimed, ""),
             _ if measured > broken => (Verdict::Holds, ""),
             _ if measured.is_nan() => (Verdict::Undecided, NOT_FINITE),
-            _ => (Verdict::Undecided, "too little is lost to tell it from nothing"),
+            _ => (Verdict::Undecided, "the loss is too small to tell from zero"),
         };
         Finding { measured: number(measured), limit: Some(holds), verdict, ..self }.because(why)
     }

@@ -116,7 +116,9 @@ fn within_tolerance(subject: &Subject<'_>) -> Result<Vec<Finding>, LawsError> {
     let finding = finding.judged(true, error, most, most);
     let needlessly = tolerance.is_some() && error <= 1e-6 * most;
     Ok(vec![if needlessly {
-        finding.verdict(Verdict::Undecided).because("the error is no millionth of what the tolerance allows")
+        finding
+            .verdict(Verdict::Undecided)
+            .because("the error is less than a millionth of what the tolerance allows")
     } else {
         finding
     }])

@@ -43,7 +43,7 @@ pub(super) fn measure(subject: &Subject<'_>) -> Result<Vec<Finding>, LawsError> 
         findings.push(match &long {
             // what is lost in exact arithmetic is lost by no rounding
             _ if !is_kept(quantity) => {
-                finding.because(format!("it is not kept to {EXACT:e} where there is no rounding"))
+                finding.because(format!("not conserved to {EXACT:e} in exact arithmetic"))
             }
             Some(Ok(errors)) => {
                 let limit = if subject.claims.to_residual { RESIDUALS } else { WALK };

@@ -15,7 +15,7 @@ const HEAD: &str = "polhode laws 1";
 
 /// What a line of the text holds.
 const RULE: &str = "it should hold motion, law, quantity, claim, measured number, half of its interval, limit, slope, half of \
-                    its interval, verdict and reason between tabs, with - for a number that there is none of";
+                    its interval, verdict and reason, separated by tabs, with - for a missing number";
 
 /// A text that is not that of a report.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]

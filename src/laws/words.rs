@@ -46,7 +46,7 @@ macro_rules! words {
 
 /// A word that reports do not use.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{word:?} is no {what} of a report")]
+#[error("{word:?} is not a word for {what} in a report")]
 #[non_exhaustive]
 pub struct UnknownWord {
     /// The word.

@@ -34,7 +34,7 @@ pub struct Dissipating {
 
 /// The loss is not usable.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
-#[error("the loss is {loss}; it is a share above 0 and below 1, for planetary bodies far below")]
+#[error("the loss is {loss}; it must be above 0 and below 1, for planetary bodies far below 1")]
 #[non_exhaustive]
 pub struct LossError {
     /// What was given.

@@ -148,7 +148,7 @@ impl fmt::Display for TwoAxes {
 
 /// The text is no pair of axes.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("axes {text:?} are no two different ones of 123, such as 31 (the outer one first)")]
+#[error("axes {text:?} are not two different axes of 123, such as 31 (the outer one first)")]
 #[non_exhaustive]
 pub struct TwoAxesError {
     /// What was given.

@@ -134,7 +134,7 @@ pub enum DistributionError {
     },
     /// The covariance is not positive semidefinite.
     #[error(
-        "is not positive semidefinite: it has the eigenvalue {} ({} of its correlations), and a variance cannot be negative",
+        "is not positive semidefinite: it has the eigenvalue {} ({} for its matrix of correlations), and a variance cannot be negative",
         Shown(*eigenvalue), Shown(*of_correlations)
     )]
     Negative {
@@ -144,13 +144,13 @@ pub enum DistributionError {
         of_correlations: f64,
     },
     /// A standard deviation is negative.
-    #[error("has the standard deviation {}, and none is negative", Shown(*value))]
+    #[error("has the standard deviation {}; it must be 0 or more", Shown(*value))]
     NegativeDeviation {
         /// The offending value.
         value: f64,
     },
     /// The ends of a range stand the wrong way round.
-    #[error("has the range from {} to {} of component {}; the lower end comes first", Shown(*low), Shown(*high), component + 1)]
+    #[error("has the range from {} to {} for component {}; give the lower end first", Shown(*low), Shown(*high), component + 1)]
     Reversed {
         /// Of which component, from 0.
         component: usize,

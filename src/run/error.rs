@@ -37,7 +37,7 @@ pub enum RunError {
     Time(#[from] ScheduleError),
     /// The run is past that time already.
     #[error(
-        "the state at t = {} s was asked for, and the run has come to t = {} s; it goes forwards only", Shown(*asked), Shown(*reached)
+        "the state at t = {} s was asked for, and the run is at t = {} s; it goes forwards only", Shown(*asked), Shown(*reached)
     )]
     Past {
         /// The time asked for, s.
@@ -49,7 +49,7 @@ pub enum RunError {
     #[error(transparent)]
     Event(#[from] EventError),
     /// The next step leaves the range of numbers.
-    #[error("diverged after {} steps, t = {} s: the next state is not finite; take a smaller step or another method",
+    #[error("diverged after {} steps, t = {} s: the next state is not finite; use a smaller step or another method",
         .last.steps, Shown(.last.time.to_f64()))]
     Diverged {
         /// The last finite sample.
@@ -81,8 +81,8 @@ pub enum RunError {
     },
     /// No step that the method can choose has an error within its tolerance.
     #[error(
-        "after {} steps, t = {} s, the method finds no step: at t = {} s one of {:.1e} s {}; the state at t = {} s is q = {:?}, \
-         omega_body = {:?} rad/s",
+        "after {} steps, t = {} s, the method finds no step: at t = {} s a step of {:.1e} s {}; the state at t = {} s is q = \
+         {:?}, omega_body = {:?} rad/s",
         .last.steps, Shown(.last.time.to_f64()), Shown(.stuck.time), .stuck.step, left(.stuck),
         Shown(.last.time.to_f64()), .last.state.attitude.components(), .last.omega_body.as_slice()
     )]
@@ -100,8 +100,8 @@ pub enum RunError {
     },
     /// The equations of an implicit step could not be solved.
     #[error(
-        "after {} steps, t = {} s, an implicit step was left with a relative residual of {residual:.1e} (at most {SOLVED:e}): \
-         it turns too far in one step; take a smaller one, at this rate of turning below one radian or {:.2e} s",
+        "after {} steps, t = {} s, an implicit step was not solved (relative residual {residual:.1e}, at most {SOLVED:e}): the \
+         body turns too far in it; use a step below one radian, which at this rate is {:.2e} s",
         .last.steps, Shown(.last.time.to_f64()), 1.0 / .last.omega_body.norm()
     )]
     Unsolved {
@@ -129,7 +129,7 @@ impl RunError {
 
 fn left(stuck: &Stuck) -> String {
     if let Some(needed) = stuck.needed {
-        return format!("is one of {needed:.0e} that a step of the run would take (at most 1e10)");
+        return format!("is one of {needed:.0e} within one step of the run (at most 1e10 are allowed)");
     }
     match stuck.estimate {
         Some(estimate) => format!("still has an error of {estimate:.1e} times the tolerance"),

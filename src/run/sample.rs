@@ -96,7 +96,7 @@ impl Sample {
             format!("the relative error of {what} is {:.1e}", error.unwrap_or_default())
         };
         Some(format!(
-            "at {:?} s {lost}: the numbers no longer describe the motion; take a smaller step or another method",
+            "at {:?} s {lost}: the numbers no longer describe the motion; use a smaller step or another method",
             self.time.hi()
         ))
     }

@@ -62,7 +62,7 @@ impl Place {
 #[non_exhaustive]
 pub enum ScheduleError {
     /// The step is not positive.
-    #[error("step {} s leads to no ascending times; it must be a positive number", Shown(*step))]
+    #[error("step {} s: it must be positive for ascending times", Shown(*step))]
     NotAStep {
         /// The step, s.
         step: f64,
@@ -75,7 +75,7 @@ pub enum ScheduleError {
     },
     /// A time lies before the one that precedes it, or before the start.
     #[error(
-        "no steps lead from {} s to {} s; times follow each other in the direction of the steps, from the start on",
+        "no steps lead from {} s to {} s; times must follow each other in the direction of the steps, from the start on",
         Shown(*before), Shown(*t)
     )]
     NotAscending {
@@ -86,7 +86,7 @@ pub enum ScheduleError {
     },
     /// More steps than can be counted exactly.
     #[error(
-        "{steps:e} steps of {} s lead to t = {} s, and at most 2^53 can be counted; take a larger step", Shown(*step), Shown(*t)
+        "{steps:e} steps of {} s lead to t = {} s, and at most 2^53 can be counted; use a larger step", Shown(*step), Shown(*t)
     )]
     TooMany {
         /// The time, s.

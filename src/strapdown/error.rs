@@ -35,8 +35,8 @@ pub enum StrapdownError {
     },
     /// The body turns more than half a turn between two samples.
     #[error(
-        "sample {sample}, at {} s: a turn by {} rad since the sample before, more than half a turn (pi): readings so far \
-         apart cannot be told from those of another motion (aliasing)",
+        "sample {sample}, at {} s: a turn by {} rad since the sample before, more than half a turn (pi): between samples so far \
+         apart the motion is ambiguous (aliasing)",
         Shown(*time), Computed(*angle)
     )]
     HalfTurn {
@@ -56,7 +56,7 @@ pub enum StrapdownError {
         readings: usize,
     },
     /// The attitude at the start is no quaternion of a turn.
-    #[error("the start: its largest component is {}; any finite quaternion but zero is an attitude", Shown(*size))]
+    #[error("the start attitude has the largest component {}; give a finite quaternion other than zero", Shown(*size))]
     Start {
         /// The largest component.
         size: f64,
@@ -65,7 +65,7 @@ pub enum StrapdownError {
     #[error("no samples: an attitude needs at least one")]
     Empty,
     /// A standard deviation of the sensor is not usable.
-    #[error("{name} of the sensor is {}; a standard deviation is at least 0 and below 1e154", Shown(*value))]
+    #[error("{name} of the sensor is {}; a standard deviation must be at least 0 and below 1e154", Shown(*value))]
     Sensor {
         /// Which one.
         name: &'static str,

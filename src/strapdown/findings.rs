@@ -77,7 +77,7 @@ impl Findings {
             (0, count, _) => (count, "rows have the time of the row before"),
             (count, ..) => (count, "rows cannot be read"),
         };
-        Some(format!("{count} {what}; of {kind}s each one counts"))
+        Some(format!("{count} {what}; with {kind}s none may be missing or repeated"))
     }
 
     /// What was left out or changed, or may be missing; a `row` is a line of a file, or a row of an array.
@@ -107,8 +107,8 @@ impl Findings {
         if let Some(first) = self.first_long {
             let (long, first) = (self.long, Shown(first));
             warnings.push(format!(
-                "{long} intervals are longer than {LONG} usual ones, the first ends at {first} s: the turn of a row that is missing there is \
-                 not in the attitude"
+                "{long} intervals are longer than {LONG} usual ones, the first ends at {first} s: if a row is missing there, \
+                 its turn is missing in the attitude"
             ));
         }
         if self.saturated > 0 {
@@ -130,7 +130,7 @@ impl Findings {
     /// Of too few samples to tell their noise: which deviation is without it, and what states it.
     pub fn without_noise(sigma: &str, noise: &str) -> String {
         format!(
-            "fewer than {NOISE_SAMPLES} samples: their noise cannot be found, and {sigma} is without it; give {noise}"
+            "fewer than {NOISE_SAMPLES} samples, too few to find their noise: {sigma} does not include it; give {noise}"
         )
     }
 
@@ -139,7 +139,7 @@ impl Findings {
         let through = if let Rule::Magnus(magnus) = rule { magnus.samples() } else { 2 };
         (2..=through).contains(&samples).then(|| {
             format!(
-                "one polynomial goes through all {samples} samples: how far the motion between them is from it is not known, and not in the \
+                "one polynomial goes through all {samples} samples: its error between them is not known and not included in the \
                  truncation"
             )
         })

@@ -40,8 +40,8 @@ pub enum FlightError {
     },
     /// The body does not turn like this when it is free.
     #[error(
-        "the body contradicts the record: its nearest free motion misses the rates by {residual:.2e} rad/s (root mean square) of \
-         {rate:.2e} rad/s, where the errors of the sensor are {sensor:.2e} rad/s"
+        "the record contradicts the body: the free motion that fits best differs from the rates by {residual:.2e} rad/s (root \
+         mean square; the rates have {rate:.2e} rad/s), and the errors of the sensor are {sensor:.2e} rad/s"
     )]
     Contradicted {
         /// Root mean square of what is left, rad/s.

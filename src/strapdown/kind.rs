@@ -42,7 +42,7 @@ impl fmt::Display for Kind {
 
 /// A word that names no kind of reading.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("'{name}' is no kind of reading; known: rate, increment, average")]
+#[error("unknown kind of reading '{name}'; known: rate, increment, average")]
 #[non_exhaustive]
 pub struct UnknownKind {
     /// The word.

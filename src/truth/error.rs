@@ -18,7 +18,7 @@ pub enum TruthError {
     #[error(transparent)]
     Time(#[from] TimeError),
     /// The times of the looks do not ascend from the start.
-    #[error("the time {} s does not come after {} s; times count from the start, are finite and ascend", Shown(*.time), Shown(*.before))]
+    #[error("the time {} s does not come after {} s; times count from the start and must be finite and ascend", Shown(*.time), Shown(*.before))]
     Order {
         /// The time, s.
         time: f64,
@@ -30,8 +30,8 @@ pub enum TruthError {
     NotFollowed(#[from] StepError),
     /// A run in double-double to the end would take too long.
     #[error(
-        "no closed form of the motion is known, and to follow it to t = {} s takes about {steps:.1e} steps in double-double, of \
-         which at most {most} are taken; ask for at most {reach:.3e} s",
+        "no closed form of the motion is known, and to follow it to t = {} s would take about {steps:.1e} steps in \
+         double-double, more than the {most} allowed; ask for at most {reach:.3e} s",
         Shown(*.until)
     )]
     TooLong {
@@ -46,8 +46,8 @@ pub enum TruthError {
     },
     /// The numbers of a run are no longer those of a motion.
     #[error(
-        "no run goes on beyond t = {} s after the start: a force or the state is not finite there, or no step can be solved; ask \
-         for a time below that", Shown(*.time)
+        "no run continues beyond t = {} s after the start: a force or the state is not finite there, or no step can be solved; \
+         ask for a time below that", Shown(*.time)
     )]
     Lost {
         /// When, s since the start.
@@ -64,9 +64,9 @@ pub enum TruthError {
     },
     /// The torque jumps, and runs that choose their steps would take too long.
     #[error(
-        "the torque jumps at t = {} s after the start, and a run that follows it from there as closely as is asked for takes about \
-         {steps:.1e} steps, of which at most {most:.1e} are taken; end the run at the jump and begin another, ask for a larger error \
-         or a shorter time, or write the torque without jumps", Shown(*.time)
+        "the torque jumps at t = {} s after the start, and a run that follows it from there as closely as asked for would take \
+         about {steps:.1e} steps, more than the {most:.1e} allowed; end the run at the jump and begin another, ask for a larger \
+         error or a shorter time, or write the torque without jumps", Shown(*.time)
     )]
     LongAcrossJump {
         /// When first, s since the start.

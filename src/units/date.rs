@@ -58,7 +58,7 @@ pub struct DateError {
 pub enum ScaleError {
     /// One has no scale.
     #[error(
-        "one date is in {} and the other has no time scale, so that they could be a minute off; write UTC, TAI, TT or TDB behind both or behind none",
+        "one date is in {} and the other has no time scale, so that they may differ by a minute; write UTC, TAI, TT or TDB after both or after neither",
         .scale.name()
     )]
     Missing {
@@ -156,11 +156,11 @@ impl FromStr for Date {
                 Err(refused("no such Julian date"))
             };
         }
-        let (day, rest) = day(text).ok_or(refused("there is no day in it"))?.map_err(refused)?;
+        let (day, rest) = day(text).ok_or(refused("the day is missing"))?.map_err(refused)?;
         let clock = time_of_day(rest).map_err(refused)?;
         let scale = match (clock.is_utc, written) {
             (true, Some(other)) if other != TimeScale::Utc => {
-                return Err(refused("Z and offsets mean UTC, and another time scale stands behind them"));
+                return Err(refused("Z and offsets mean UTC, but another time scale follows"));
             }
             (true, _) => Some(TimeScale::Utc),
             (false, written) => written,
@@ -174,7 +174,7 @@ impl FromStr for Date {
         let days = libm::floor(before.to_f64() / DAY);
         let is_last = before.to_f64() - days * DAY >= DAY - 1.0;
         if !(is_last && scale == Some(TimeScale::Utc) && ends_in_a_leap_second(day + days as i64)) {
-            return Err(refused("a second 60 is that of a leap second, in UTC"));
+            return Err(refused("second 60 exists only in a leap second of UTC"));
         }
         Ok(Date { instant: julian(before), scale: None }.in_scale(scale).later(1.0))
     }
@@ -188,7 +188,7 @@ fn scale(text: &str) -> Result<(&str, Option<TimeScale>), &'static str> {
     let is_behind = rest.trim_end().ends_with(|c: char| c.is_ascii_digit() || c == '.' || c == 'Z');
     match TimeScale::named(name) {
         Some(scale) if is_behind => Ok((rest.trim_end(), Some(scale))),
-        None if is_behind && name.len() > 1 => Err("its time scale is none of UTC, TAI, TT and TDB"),
+        None if is_behind && name.len() > 1 => Err("its time scale must be UTC, TAI, TT or TDB"),
         _ => Ok((text, None)),
     }
 }
@@ -375,8 +375,8 @@ mod tests {
             ("2025-04-01T10:00+99:99", "hours of an offset"),
             ("2025-04-01T10:00-24", "hours of an offset"),
             ("2025-04-01T10:00+0160", "hours of an offset"),
-            ("yesterday", "no day"),
-            ("1-2-3-4", "no day"),
+            ("yesterday", "the day is missing"),
+            ("1-2-3-4", "the day is missing"),
             ("1e300", "no such Julian date"),
         ] {
             let error = text.parse::<Date>().unwrap_err().to_string();

@@ -55,12 +55,12 @@ pub struct StateCovariance {
 pub enum CovarianceError {
     /// No start one standard deviation away is that of a body.
     #[error(
-        "one standard deviation from the inertia tensor, either way, no body has the tensor: use a narrower covariance"
+        "the inertia tensors at plus and minus one standard deviation are not physical; give a smaller covariance"
     )]
     NoBody,
     /// The process noise would take too long.
     #[error(
-        "in {t:e} s the body turns by {radians:e} rad; process noise is integrated over {MOST_PANELS} rad at most"
+        "in {t:e} s the body turns by {radians:e} rad; process noise is integrated over at most {MOST_PANELS} rad: give an earlier time"
     )]
     TooLong {
         /// The time, s.

@@ -54,7 +54,7 @@ pub struct TumblingElements {
 pub enum TumblingError {
     /// The mode is none of the two, or the body has no such mode.
     #[error("no {} motion with the moments {}, {}, {}; {}", .mode.name(), .moments[0], .moments[1], .moments[2],
-        "long-axis mode needs a smallest moment, short-axis mode a largest")]
+        "long-axis mode needs one moment below the other two, short-axis mode one above them")]
     Mode {
         /// The mode.
         mode: Mode,
@@ -62,7 +62,7 @@ pub enum TumblingError {
         moments: [f64; 3],
     },
     /// A period, or an angle, is not usable.
-    #[error("{quantity} is {value}; periods are above zero, and every number is finite")]
+    #[error("{quantity} is {value}; periods must be above 0, and all numbers finite")]
     Value {
         /// Which quantity.
         quantity: &'static str,
@@ -71,7 +71,7 @@ pub enum TumblingError {
     },
     /// P_1 leaves no other period.
     #[error(
-        "P_1 = {combined:?} leaves no period beside {other:?}; in {} mode 1/P_1 = 1/P_phi {} 1/P_psi",
+        "P_1 = {combined:?} and the other period, {other:?}, contradict each other; in {} mode 1/P_1 = 1/P_phi {} 1/P_psi",
         .mode.name(),
         if *.mode == Mode::LongAxis { "+" } else { "-" }
     )]
@@ -85,7 +85,7 @@ pub enum TumblingError {
     },
     /// The periods do not fit the moments.
     #[error(
-        "P_psi/P_phi = {ratio:?}: a body of these moments in {} mode has ratios above {least:?} and below some {most:.1}",
+        "P_psi/P_phi = {ratio:?}; for these moments in {} mode it must be above {least:?} and below about {most:.1}",
         .mode.name()
     )]
     Ratio {

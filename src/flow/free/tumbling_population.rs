@@ -165,13 +165,15 @@ impl TumblingPopulation {
 #[non_exhaustive]
 pub enum NoTumbler {
     /// The weight of a solution, or the sum of them.
-    #[error("a weight of {weight}: weights are above zero and finite, and there is at least one")]
+    #[error(
+        "the weight or the sum of the weights is {weight}; weights must be above 0 and finite, and there must be at least one"
+    )]
     Weight {
         /// The weight.
         weight: f64,
     },
     /// No draw, or the mean.
-    #[error("{}{last}", if *.draws == 0 { String::new() } else { format!("no body has any of {draws} draws; the last: ") })]
+    #[error("{}{last}", if *.draws == 0 { String::new() } else { format!("none of {draws} draws belongs to a physical body; the last: ") })]
     Drawn {
         /// How many were drawn; 0 of the mean.
         draws: u32,
@@ -185,7 +187,7 @@ pub enum NoTumbler {
 #[non_exhaustive]
 pub enum NoElements {
     /// The moments have changed their order.
-    #[error("moments {}, {}, {} where the smallest, the middle and the largest were drawn", .moments[0], .moments[1], .moments[2])]
+    #[error("moments {}, {}, {} were drawn as the smallest, the middle and the largest; they are not in this order", .moments[0], .moments[1], .moments[2])]
     Order {
         /// Those drawn for the smallest, the middle and the largest.
         moments: [f64; 3],

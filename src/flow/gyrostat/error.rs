@@ -8,8 +8,8 @@ use thiserror::Error;
 pub enum GyrostatError {
     /// All but at a steady spin that is not stable.
     #[error(
-        "the start is all but at a steady spin that is not stable: in the shortest period of small oscillations the momentum moves by {length:.1e} of \
-         itself; the closed form has too few digits there, and the method taylor follows this motion"
+        "the start is too close to an unstable steady spin for the closed form: in the shortest period of small oscillations \
+         the momentum changes by {length:.1e} of its size; use the method taylor"
     )]
     Saddle {
         /// |m × ω|/|m| over the time of one small oscillation.
@@ -17,8 +17,8 @@ pub enum GyrostatError {
     },
     /// All but on a separatrix.
     #[error(
-        "the start is all but on a separatrix ({apart:.1e} away, squared and of the whole): the closed form would miss the equation of motion by \
-         {defect:.1e} of the rates; the method taylor follows this motion"
+        "the start is too close to a separatrix for the closed form (squared relative distance {apart:.1e}), which would \
+         violate the equation of motion by {defect:.1e} of the rates; use the method taylor"
     )]
     Separatrix {
         /// Squared difference of the two roots that meet on the separatrix, over the terms that it is a sum of.
@@ -28,8 +28,8 @@ pub enum GyrostatError {
     },
     /// The closed form does not hold the equation of motion, and no regime is known in which that happens.
     #[error(
-        "the closed form misses the equation of motion by {defect:.1e} of the rates, at most 1e-15 is rounding; the method taylor follows this \
-         motion"
+        "the closed form violates the equation of motion by {defect:.1e} of the rates, more than rounding (1e-15); use the \
+         method taylor"
     )]
     Digits {
         /// Largest defect of the equation of motion over the largest rate; undefined where a number has left the range of a double.

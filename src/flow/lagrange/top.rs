@@ -28,12 +28,12 @@ const UPRIGHT: f64 = 1e-70;
 #[non_exhaustive]
 pub enum LagrangeError {
     /// There is no weight moment.
-    #[error("the body is free: it has no weight moment; its exact motion is that of the free body")]
+    #[error("the body has no weight moment; use the exact motion of a free body")]
     Free,
     /// No two principal moments agree.
     #[error(
-        "principal moments {}, {}, {}: no two agree, the closest differ by {:.3e} of their sum (at most {ROUNDING:e}); a Lagrange top \
-         is symmetric",
+        "principal moments {}, {}, {}: a Lagrange top has two equal ones; here the closest differ by {:.3e} of their sum (at \
+         most {ROUNDING:e} is allowed)",
         Shown(moments[0]), Shown(moments[1]), Shown(moments[2]), relative
     )]
     NotSymmetric {
@@ -44,7 +44,7 @@ pub enum LagrangeError {
     },
     /// The weight moment is not on the symmetry axis.
     #[error(
-        "the weight moment is {angle:.3e} rad off the symmetry axis (at most {ROUNDING:e}); a Lagrange top has it on the axis"
+        "the weight moment is {angle:.3e} rad away from the symmetry axis (at most {ROUNDING:e} is allowed); that of a Lagrange top lies on the axis"
     )]
     OffAxis {
         /// Angle between weight moment and symmetry axis, rad.
@@ -52,8 +52,8 @@ pub enum LagrangeError {
     },
     /// The weight is negligible beside the spin: terms of the solution leave the range of a double.
     #[error(
-        "the weight moment is {ratio:.1e} of moment of inertia times squared angular velocity (at least {WEAKEST:e}): too little \
-         to be computed with; leave it out"
+        "the weight moment is {ratio:.1e} of moment of inertia times squared angular velocity (at least {WEAKEST:e} is needed): \
+         too small for the closed form; leave it out"
     )]
     Weak {
         /// |c|/(A ω²), ω the fastest part of m/A.
@@ -61,15 +61,15 @@ pub enum LagrangeError {
     },
     /// The axis is all but at rest on the vertical.
     #[error(
-        "the axis starts {tilt:.1e} away from rest on the vertical, too little for its fourth power to have digits; give it \
-         0 or at least {UPRIGHT:e}"
+        "the axis starts {tilt:.1e} away from rest on the vertical, too close for the closed form; give 0 or at least \
+         {UPRIGHT:e}"
     )]
     Upright {
         /// Largest of the quaternion's components that would be zero and of angular velocity over the fastest rate.
         tilt: f64,
     },
     /// Something else acts besides gravity.
-    #[error("{force} acts on the body besides uniform gravity; a Lagrange top has nothing but its weight")]
+    #[error("{force} acts on the body besides uniform gravity; on a Lagrange top only its weight acts")]
     Forced {
         /// Name of the force.
         force: String,

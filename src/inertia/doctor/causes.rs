@@ -105,31 +105,28 @@ impl fmt::Display for Cause {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Cause::ProductSigns => {
-                write!(f, "the products have the other sign: +int xy dm where I_xy = -int xy dm belongs")
+                write!(f, "the products have the other sign: +int xy dm instead of I_xy = -int xy dm")
             }
             Cause::NegativeMoments => write!(f, "a moment on the diagonal has a minus sign"),
             Cause::HalfPair { entry, upper } => {
                 let (right, wrong) = if *upper { ("above", "below") } else { ("below", "above") };
                 write!(
                     f,
-                    "of the pair {entry} the one {wrong} the diagonal is wrong, the one {right} is right"
+                    "the two entries {entry} differ: the one {wrong} the diagonal is wrong, the one {right} it is right"
                 )
             }
             Cause::AboutOrigin => {
-                write!(
-                    f,
-                    "taken about the origin, not about the centre of mass: M (R^2 1 - R R^T) is to be subtracted"
-                )
+                write!(f, "taken about the origin, not about the centre of mass: subtract M (R^2 1 - R R^T)")
             }
             Cause::SubtractedTwice => write!(
                 f,
-                "taken about the centre of mass already, then M (R^2 1 - R R^T) was subtracted: it is to be added"
+                "already taken about the centre of mass, yet M (R^2 1 - R R^T) was subtracted: add it"
             ),
             Cause::Unit { name, factor } => {
-                write!(f, "in {name}, not in kg m^2: to be multiplied by {factor:e}")
+                write!(f, "in {name}, not in kg m^2: multiply by {factor:e}")
             }
             Cause::ConvertedTwice { name, factor } => {
-                write!(f, "in kg m^2, but converted from {name} all the same: to be divided by {factor:e}")
+                write!(f, "already in kg m^2, yet converted from {name}: divide by {factor:e}")
             }
             Cause::PerMass => write!(f, "divided by the mass: squares of radii of gyration, not moments"),
             Cause::Order(order) => write!(f, "the six numbers are in the order {order}"),
@@ -140,7 +137,7 @@ impl fmt::Display for Cause {
                 write!(f, "{entry} is {times} times too {size}: a decimal slip")
             }
             Cause::MirroredTwin { axis } => {
-                write!(f, "the signs of the products are not those of its twin mirrored along {axis}")
+                write!(f, "the signs of the products do not match those of its mirror image along {axis}")
             }
             Cause::SecondMoments => {
                 write!(f, "second moments int x_j x_k dm (a covariance), not inertia: I = tr(J) 1 - J")

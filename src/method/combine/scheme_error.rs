@@ -8,8 +8,8 @@ use thiserror::Error;
 pub enum SchemeError {
     /// The scheme alternates two flows, and the free part of the base has a lower order than the scheme.
     #[error(
-        "scheme {scheme:?} alternates kicks with free motion that is exact or at least of its own order, and that of {base} has \
-         order {order}; take a composition, such as suzuki-4, or kick-drift@{scheme}"
+        "scheme {scheme:?} alternates kicks with free motion, which must be exact or at least of its own order; that of {base} \
+         has order {order}: use a composition, such as suzuki-4, or kick-drift@{scheme}"
     )]
     Inexact {
         /// Name of the scheme.
@@ -21,7 +21,7 @@ pub enum SchemeError {
     },
     /// The scheme alternates two flows, and the base is one map.
     #[error(
-        "scheme {scheme:?} alternates two flows, and {base} is one map; take a composition, such as suzuki-4"
+        "scheme {scheme:?} alternates two flows, and {base} is a single map; use a composition, such as suzuki-4"
     )]
     OneMap {
         /// Name of the scheme.
@@ -31,8 +31,8 @@ pub enum SchemeError {
     },
     /// The two lists of a scheme do not alternate.
     #[error(
-        "scheme {scheme:?} lists {outer} shares of the flow that is first and {inner} of the other; of the first there are as \
-         many or one more"
+        "scheme {scheme:?} lists {outer} shares of the first flow and {inner} of the other; the first must have as many, or one \
+         more"
     )]
     Lengths {
         /// Name of the scheme.
@@ -44,8 +44,8 @@ pub enum SchemeError {
     },
     /// The lists of a processed scheme do not alternate.
     #[error(
-        "processed scheme {scheme:?} lists {} shares of A and {} of B for the kernel, {} and {} for the processor; in the kernel there \
-         are as many of both, in the processor one more of B, or none of both",
+        "processed scheme {scheme:?} lists {} shares of A and {} of B for the kernel, {} and {} for the processor; the kernel \
+         must have as many of both, the processor one more of B, or none of both",
         kernel[0], kernel[1], processor[0], processor[1]
     )]
     ProcessedLengths {
@@ -58,7 +58,7 @@ pub enum SchemeError {
     },
     /// The list of gradients does not belong to the kicks.
     #[error(
-        "scheme {scheme:?} lists {given} gradients, and the first half of its step has {kicks} kicks, the middle included"
+        "scheme {scheme:?} lists {given} gradients, and the first half of its step has {kicks} kicks, including the middle one: give a gradient for each"
     )]
     Gradients {
         /// Name of the scheme.
@@ -78,8 +78,8 @@ pub enum SchemeError {
     },
     /// What a scheme claims is no order, or contradicts itself.
     #[error(
-        "scheme {scheme:?} claims order {order}{}; an order is one of 1 to 32, and the orders by powers of the small part fall, \
-         the last of them that of the scheme",
+        "scheme {scheme:?} claims order {order}{}; an order must be from 1 to 32, and the orders by powers of the small part \
+         must decrease to that of the scheme",
         powers.map_or(String::new(), |powers| format!(" and orders {powers:?} by powers of the small part"))
     )]
     Claim {
@@ -113,9 +113,8 @@ pub enum SchemeError {
     },
     /// A composition needs a base that is symmetric under every force.
     #[error(
-        "{base} foretells ω at the end of a step, so that it is symmetric only where the torque does not depend on ω, and scheme \
-         {scheme:?} raises the order of methods that are symmetric under every force; take implicit-midpoint, rattle, lie-poisson \
-         or kick-drift"
+        "scheme {scheme:?} needs a method that is symmetric under every force, and {base}, which predicts ω at the end of a \
+         step, is not if the torque depends on ω; use implicit-midpoint, rattle, lie-poisson or kick-drift"
     )]
     Foretells {
         /// Name of the scheme.
@@ -125,8 +124,8 @@ pub enum SchemeError {
     },
     /// A composition is of higher order only over a symmetric base.
     #[error(
-        "{base} is not symmetric, and scheme {scheme:?} raises the order of symmetric methods only; take implicit-midpoint, \
-         rattle, lie-poisson or kick-drift"
+        "scheme {scheme:?} needs a symmetric method, and {base} is not symmetric; use implicit-midpoint, rattle, lie-poisson or \
+         kick-drift"
     )]
     NotSymmetric {
         /// Name of the scheme.

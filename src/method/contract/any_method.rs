@@ -157,8 +157,8 @@ pub enum StepError {
     },
     /// The method needs the derivative of the torque, and a force other than gravity acts.
     #[error(
-        "method {method:?} takes the derivative of the torque, which is known of uniform gravity alone, and {force} acts; take \
-         kick-drift@srkn-6b, for one"
+        "method {method:?} needs the derivative of the torque, which is known only for uniform gravity, and {force} acts; use \
+         kick-drift@srkn-6b, for example"
     )]
     NoGradient {
         /// Name of the method.
@@ -179,7 +179,7 @@ pub enum StepError {
     /// The method evaluates forces on power series, and one is a closure in `f64`.
     #[error(
         "method {method:?} cannot take {force}, a closure in f64: it evaluates laws on power series; write the law for every \
-         Real, or take rk4 or, for a potential, kick-drift"
+         Real, or use rk4 or, for a potential, kick-drift"
     )]
     Closure {
         /// Name of the method.
@@ -191,8 +191,8 @@ pub enum StepError {
 
 fn remedy(problem: Problem) -> &'static str {
     match problem {
-        Problem::Torque => "a torque without potential; take rk4 or implicit-midpoint",
-        Problem::Gyrostat | Problem::GyrostatPotential => "on a body with wheels; take taylor or lie-poisson",
-        _ => "a potential: it is for free motion; take kick-drift, for one",
+        Problem::Torque => "a torque without potential; use rk4 or implicit-midpoint",
+        Problem::Gyrostat | Problem::GyrostatPotential => "on a body with wheels; use taylor or lie-poisson",
+        _ => "as it is for free motion only; use kick-drift, for example",
     }
 }

@@ -72,7 +72,7 @@ pub fn method(name: &str) -> Result<Box<dyn AnyMethod>, UnknownMethod> {
         "two-turn" => {
             let chosen = asked.scheme()?;
             let axes = argument.map(str::parse::<TwoAxes>).transpose();
-            let rule = "two different ones of 123, the outer axis first, such as two-turn:31";
+            let rule = "two different axes of 123, the outer one first, such as two-turn:31";
             kicked(TwoTurn { axes: axes.map_err(|_| asked.refused(rule))? }, chosen)
         }
         "exact-step" => match asked.scheme_alone()? {
@@ -219,7 +219,7 @@ pub enum UnknownMethod {
         name: String,
     },
     /// The name is known, the argument is not.
-    #[error("method {name:?} has an argument that it cannot take; allowed: {rule}")]
+    #[error("method {name:?} cannot take this argument; allowed: {rule}")]
     Argument {
         /// What was asked for.
         name: String,

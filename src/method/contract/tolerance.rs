@@ -13,7 +13,7 @@ pub enum ToleranceError {
         method: String,
     },
     /// The tolerance is too small, too large, or no number.
-    #[error("{tolerance:e} is no tolerance of {method}; it must be {range}")]
+    #[error("the tolerance {tolerance:e} of {method} must be {range}")]
     OutOfRange {
         /// Name of the method.
         method: &'static str,

@@ -45,7 +45,7 @@ pub struct Gauss {
 
 /// There is no such order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("there is no Gauss-Legendre collocation of order {order} here; there are the orders 2, 4, 6 and 8")]
+#[error("there is no Gauss-Legendre method of order {order} here; the orders are 2, 4, 6 and 8")]
 #[non_exhaustive]
 pub struct GaussOrderError {
     /// What was asked for.

@@ -61,7 +61,7 @@ impl Claimed for PhaseCorrected {
         // what is left depends on the harmonics of the short run, which are doubles, and on the step by no power
         let (order, to_doubles) = (None, true);
         let [symmetric, poisson, symplectic] = [false; 3];
-        let source = "departure from the exact motion, predicted by a short run, taken back at output";
+        let source = "deviation from the exact motion, predicted by a short run and corrected at output";
         Some(Claims { order, to_doubles, symmetric, poisson, symplectic, source, ..base })
     }
 }

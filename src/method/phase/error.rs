@@ -14,8 +14,8 @@ use crate::method::StepError;
 pub enum PhaseError {
     /// The method does not keep the energy and |m|.
     #[error(
-        "the phase of method {method:?} has no constant rates: {lost}, so that its error grows faster than time; take a method that \
-         keeps both, such as two-turn or rattle"
+        "the phase error of method {method:?} grows faster than linearly: {lost}; use a method that keeps energy and |m|, such \
+         as two-turn or rattle"
     )]
     NotKept {
         /// Name of the method.
@@ -24,14 +24,14 @@ pub enum PhaseError {
         lost: &'static str,
     },
     /// What is left of the phase error does not grow.
-    #[error("the phase error of method {method:?} is taken back at output: what is left does not grow")]
+    #[error("method {method:?} corrects its phase error at output, and the rest does not grow")]
     TakenBack {
         /// Name of the method.
         method: String,
     },
     /// Forces are strong.
     #[error(
-        "the phase error is predicted of the free body, and under {force} {} of its growth is another, more than {MOST_LEFT:e}: nothing is predicted",
+        "the phase error is predicted for the free body only; under {force} its growth differs by {}, more than {MOST_LEFT:e}",
         share_in_words(*share)
     )]
     Force {
@@ -41,15 +41,15 @@ pub enum PhaseError {
         share: f64,
     },
     /// A force that is switched.
-    #[error("the phase error is predicted of forces that act throughout, and {force} is switched")]
+    #[error("the phase error is predicted only for forces that act all the time, and {force} is switched")]
     Switched {
         /// Name of the force.
         force: String,
     },
     /// Forces have acted for long.
     #[error(
-        "under {force} the phase error is predicted to {until:.3e} s, where a hundredth of its growth may be another than that of the \
-         free body, and {t:e} s are asked"
+        "under {force} the phase error can be predicted up to {until:.3e} s, where its growth may differ by a hundredth from \
+         that of the free body, not up to {t:e} s"
     )]
     Late {
         /// The time, s.
@@ -62,7 +62,7 @@ pub enum PhaseError {
     /// Forces have changed the motion.
     #[error(
         "under {force} |L| or the distance from the separatrix has changed by a share of {change:.1e} after {t:e} s, more than \
-         {MOST_LEFT:e}: the phase error is no longer that predicted at the start"
+         {MOST_LEFT:e}: the prediction from the start no longer holds"
     )]
     Changed {
         /// The time, s.
@@ -83,22 +83,18 @@ pub enum PhaseError {
     Start(#[from] StateError),
     /// The motion has no period.
     #[error(
-        "the start is on the separatrix: its motion has no period, and the phase error no constant rates"
+        "the start is on the separatrix: its motion has no period, and the phase error does not grow linearly"
     )]
     Separatrix,
     /// The short run would be long.
-    #[error(
-        "the short run would take {steps:.1e} steps, more than {MOST_STEPS:e}: nothing is predicted; take \
-         longer steps"
-    )]
+    #[error("the short run would take {steps:.1e} steps, more than {MOST_STEPS:e}; use a larger step")]
     Long {
         /// Steps of the run.
         steps: f64,
     },
     /// A period has too few steps.
     #[error(
-        "the momentum comes round in {steps:.1} steps, too few to tell what oscillates from what grows: nothing is predicted; take \
-         shorter steps"
+        "a period of the momentum has {steps:.1} steps, too few to tell oscillation from growth; use a smaller step"
     )]
     Coarse {
         /// Steps in half a period of the momentum.
@@ -106,8 +102,9 @@ pub enum PhaseError {
     },
     /// The step is so long, or the separatrix so near, that shift and twist do not grow linearly.
     #[error(
-        "shift and twist do not grow linearly: two parts of the short run differ in them by a share of {doubt:.1e}, more than \
-         {MOST_DOUBT:e}; (|L|^2/2E - I2)/I2, zero on the separatrix, is {distance:.1e}; take shorter steps"
+        "shift and twist do not grow linearly: they differ by a share of {doubt:.1e} between two parts of the short run, more \
+         than {MOST_DOUBT:e}. The start is at (|L|^2/2E - I2)/I2 = {distance:.1e}, which is 0 on the separatrix. Use a smaller \
+         step"
     )]
     Unsettled {
         /// Relative difference of the growth.
@@ -117,7 +114,7 @@ pub enum PhaseError {
     },
     /// The short run left the range of numbers, or an implicit step had no solution.
     #[error(
-        "the short run of {steps} steps from which the phase error is predicted has no finite end: take shorter steps"
+        "the short run of {steps} steps from which the phase error is predicted diverges; use a smaller step"
     )]
     Diverged {
         /// Its steps.
@@ -127,5 +124,5 @@ pub enum PhaseError {
 
 /// Of a method without a phase error of its own the share has no bound.
 fn share_in_words(share: f64) -> String {
-    if share < 1.0 { format!("a share of {share:.1e}") } else { "all".into() }
+    if share < 1.0 { format!("a share of {share:.1e}") } else { "all of it".into() }
 }

@@ -51,7 +51,7 @@ pub enum EnsembleError {
         t: f64,
     },
     /// The numbers of steps descend.
-    #[error("{after} steps stand behind {before}; numbers of steps are given in ascending order")]
+    #[error("{after} steps follow {before}; give numbers of steps in ascending order")]
     Descending {
         /// The larger one, which stands before.
         before: u64,

@@ -72,25 +72,25 @@ pub enum ThroughError {
         t: f64,
     },
     /// Both attitudes have the same time.
-    #[error("both attitudes are at t = {t} s: no motion connects two attitudes in no time")]
+    #[error("both attitudes are at t = {t} s; their times must differ")]
     SameTime {
         /// The time, s.
         t: f64,
     },
     /// The number of turns is not positive, or too large to search.
-    #[error("{turns} turns between the attitudes: a number above 0 and up to {MOST_TURNS} is wanted")]
+    #[error("{turns} turns between the attitudes; give a number above 0 and up to {MOST_TURNS}")]
     Turns {
         /// The number given.
         turns: f64,
     },
     /// Too few attitudes.
-    #[error("{attitudes} attitudes are too few: two are wanted for an interpolation, three for a fit")]
+    #[error("{attitudes} attitudes are too few; an interpolation needs two, a fit three")]
     TooFew {
         /// How many there are.
         attitudes: usize,
     },
     /// Times of a table do not ascend.
-    #[error("the attitude at {after} s comes after that at {before} s: times of a table ascend")]
+    #[error("the attitude at {after} s follows that at {before} s in the table; times must ascend")]
     NotAscending {
         /// A time, s.
         before: f64,
@@ -108,14 +108,14 @@ pub enum ThroughError {
         last: f64,
     },
     /// The noise of attitudes is no standard deviation.
-    #[error("{noise} rad is no standard deviation of attitudes: a positive number is wanted")]
+    #[error("the standard deviation of the attitudes is {noise} rad; it must be positive")]
     Noise {
         /// The noise, rad.
         noise: f64,
     },
     /// Least squares that do not converge.
     #[error(
-        "least squares over the first {attitudes} attitudes do not converge: the start is too far from them"
+        "the least-squares fit of the first {attitudes} attitudes does not converge: the start is too far from them"
     )]
     NotConverged {
         /// How many attitudes were taken.
