@@ -114,31 +114,34 @@ impl Rule {
                 "name the columns t, wx, wy, wz (or \"Time (s)\", \"Gyroscope x (rad/s)\", ...), or say which they are: --columns t=NAME,wx=NAME,... (keys in --help)",
             ),
             Self::Quantity(found) => (
-                format!("neither an attitude nor an angular velocity is told by the names {}", listed(found)),
+                format!("no attitude and no angular velocity among the columns {}", listed(found)),
                 "name the columns by --columns t=NAME,qw=NAME,qx=NAME,... (keys in --help)",
             ),
             Self::Unique(first, second) => (
-                format!("columns {first} and {second} have this one name"),
+                format!("columns {first} and {second} both have this name"),
                 "rename one, or give the number of the column that is meant in --columns",
             ),
             Self::OneGroup(what, first, second) => (
-                format!("two {what}: from '{}' and from '{}' on", visible(first), visible(second)),
+                format!(
+                    "two {what}: one from column '{}' on, one from '{}' on",
+                    visible(first),
+                    visible(second)
+                ),
                 "name the columns of one by --columns (keys in --help)",
             ),
-            Self::Complete(keys) => (format!("a part of {keys}"), "name all of them, or none"),
-            Self::KnownUnit(known) => (
-                format!("no unit that is known here; known: {known}"),
-                "convert the column, or correct its header",
-            ),
+            Self::Complete(keys) => (format!("only a part of {keys}"), "name all of them, or none"),
+            Self::KnownUnit(known) => {
+                (format!("unknown unit; known: {known}"), "convert the column, or correct its header")
+            }
             Self::OneUnit(header, flag) => {
                 (format!("the header says {header}, the flag says {flag}"), "drop one of the two")
             }
             Self::Unit(unit) => (
-                format!("the column has no unit; needed is {unit}"),
+                format!("the column has no unit; {unit} is needed"),
                 "write it in the header, as NAME (UNIT)",
             ),
             Self::Time => {
-                ("counts samples and is no time".into(), "give the rate of the samples: --sample-rate HZ")
+                ("counts samples and is not a time".into(), "give the rate of the samples: --sample-rate HZ")
             }
             Self::Longer(cells, columns) => (
                 format!("{cells} cells where the header has {columns}"),
@@ -165,9 +168,10 @@ impl Rule {
                 format!("comes before the time above it, {} s", short(*before)),
                 "sort the rows by time, or give the files apart",
             ),
-            Self::Turn => {
-                ("every component of the attitude is zero, which is no rotation".into(), "leave the row out")
-            }
+            Self::Turn => (
+                "every component of the attitude is zero, which is not a rotation".into(),
+                "leave the row out",
+            ),
             Self::Other(rule) => (rule.clone(), "name a table with a header"),
         }
     }

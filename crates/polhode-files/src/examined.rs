@@ -150,7 +150,7 @@ impl Examined {
         match &found.oddity {
             Some(oddity) => Some(oddity.to_string()),
             None if found.verdict == Validity::Suspicious => {
-                Some("valid, but hardly of the body described".into())
+                Some("valid, but implausible for the body described".into())
             }
             None => None,
         }
@@ -182,7 +182,7 @@ impl Examined {
         };
         let tied = matches!(found.causes.as_slice(), [first, second, ..] if first.is_tied_with(second));
         if tied {
-            text += "\n  two causes explain it equally well; more is known with the mass and the extents of the body";
+            text += "\n  two causes explain it equally well; the mass and the extents of the body may decide";
         }
         for (place, explanation) in found.causes.iter().take(3).enumerate() {
             let entries = six(&explanation.corrected).map(rounded).join(",");
@@ -213,8 +213,8 @@ impl Examined {
     }
 }
 
-const ZERO: &str = "every entry of the tensor is zero, as of a point, which does not turn; give the sizes of a body, \
-                    or its entries in a smaller unit";
+const ZERO: &str = "every entry of the tensor is zero, as of a point mass; give the sizes of a body, or its entries in a \
+                    smaller unit";
 
 fn is_zero(tensor: &Matrix3<f64>) -> bool {
     tensor.iter().all(|entry| *entry == 0.0)

@@ -181,7 +181,7 @@ mod tests {
     #[test]
     fn broken_tables_are_refused_in_the_words_of_every_table() {
         for (text, told) in [
-            ("i1,i2,I2,i3\n1,2,2,2.5\n", ", line 1: columns 2 and 3 have this one name; rename one"),
+            ("i1,i2,I2,i3\n1,2,2,2.5\n", ", line 1: columns 2 and 3 both have this name; rename one"),
             ("i1,i2,i3\n1;2;2.5\n", ", line 2: cells separated by semicolons where the header has commas"),
             ("i1,i2,i3\n1,2,2.5,7\n", ", line 2: 4 cells where the header has 3"),
             ("i1,i2,i3\n1,2,2.5\n1,2", ", line 3: the file ends in the middle of this row"),

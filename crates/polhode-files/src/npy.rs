@@ -47,7 +47,7 @@ impl<const N: usize> Array<N> {
         file.read_exact(&mut found)?;
         let size = file.metadata()?.len();
         if found[..] != head([times, members, N as u64]) || size != Self::size(times, members) {
-            let message = format!("it is no whole array of {times} x {members} x {N} doubles");
+            let message = format!("it is not a complete array of {times} x {members} x {N} doubles");
             return Err(io::Error::new(io::ErrorKind::InvalidData, message));
         }
         Ok(Self { file, times, members, bytes: Vec::new() })
@@ -143,7 +143,7 @@ mod tests {
         assert_eq!(rows[1], [[0.0; 2], [5.0, -0.0], [6.5, 1e-300]]);
         let mut again = kept.try_clone().unwrap();
         again.rewind().unwrap();
-        assert!(Array::<2>::open(again, 2, 4).unwrap_err().to_string().contains("no whole array"));
+        assert!(Array::<2>::open(again, 2, 4).unwrap_err().to_string().contains("not a complete array"));
         kept.set_len(130).unwrap();
         let mut short = kept;
         short.rewind().unwrap();

@@ -51,7 +51,8 @@ pub fn quaternion(text: &str) -> Result<[f64; 4], String> {
     let q = numbers(text)?;
     if q == [0.0; 4] {
         return Err(
-            "the zero quaternion has no direction; any other norm is fine, and 1,0,0,0 is the attitude unturned".into()
+            "the zero quaternion is not a rotation; any other norm is accepted, and 1,0,0,0 is the identity"
+                .into(),
         );
     }
     Ok(q)

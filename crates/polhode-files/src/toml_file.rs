@@ -129,7 +129,7 @@ impl<'t> Section<'t> {
             _ => None,
         };
         let refused =
-            || self.at(key, "needed is a whole number from 0 to 18446744073709551615, without quotes");
+            || self.at(key, "expected a whole number from 0 to 18446744073709551615, without quotes");
         parsed.map(Some).ok_or_else(refused)
     }
 
@@ -145,13 +145,13 @@ impl<'t> Section<'t> {
 
     /// `N` lists of `M` numbers each.
     pub fn rows<const N: usize, const M: usize>(&self, key: &str) -> Result<Option<[[f64; M]; N]>, Error> {
-        let needed = || self.at(key, &format!("needed are {N} lists of {M} numbers, as [[...], [...]]"));
+        let needed = || self.at(key, &format!("expected {N} lists of {M} numbers, as [[...], [...]]"));
         self.lists(key, needed)?.map(|rows| rows.try_into().map_err(|_| needed())).transpose()
     }
 
     /// Any number of lists of two numbers each; none where the key is missing.
     pub fn pairs(&self, key: &str) -> Result<Vec<[f64; 2]>, Error> {
-        let needed = || self.at(key, "needed are lists of 2 numbers, as [[...], [...]]");
+        let needed = || self.at(key, "expected lists of 2 numbers, as [[...], [...]]");
         Ok(self.lists(key, needed)?.unwrap_or_default())
     }
 

@@ -183,7 +183,7 @@ impl SecondTime {
         let name = visible(table.header.names[self.place].text.trim());
         (off(farthest) > allowed).then(|| {
             format!(
-                "column '{name}' is a time too, and does not go with the times that are read: at line {} it is off by {:.1e}",
+                "column '{name}' is also a time and contradicts the times that are read: at line {} it differs by {:.1e}",
                 farthest.0,
                 off(farthest)
             )
@@ -283,8 +283,7 @@ fn check_units(table: &Table) -> Result<(), TableError> {
         for (place, unit) in momentum.places.iter().zip(&momentum.units) {
             if let Some(unit) = unit.as_deref().filter(|unit| MomentumUnit::named(unit).is_none()) {
                 let error = table.refused_column(*place, Rule::KnownUnit("N m s, kg m^2/s")).value(unit);
-                let remedy =
-                    "convert the column; where the moments go with its unit, leave it out of the header";
+                let remedy = "convert the column; if its unit is consistent with the moments, leave the unit out of the header";
                 return Err(error.with_remedy(remedy));
             }
         }
@@ -354,9 +353,9 @@ impl Bodies {
                     None => table.refused(Rule::Order(before, true)),
                 };
                 return Err(match (before == time, table.header.id.is_some()) {
-                    (true, true) => error.with_remedy("two rows of this body have one time; leave one out"),
+                    (true, true) => error.with_remedy("two rows of this body have the same time; leave one out"),
                     (true, false) => error.with_remedy(
-                        "two rows have one time; leave one out, or name the bodies in a column id if there are several",
+                        "two rows have the same time; leave one out, or name the bodies in a column id if there are several",
                     ),
                     (false, true) => error.with_remedy("sort the rows of each body by time"),
                     (false, false) => error,

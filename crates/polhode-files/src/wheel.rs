@@ -55,8 +55,7 @@ fn driven(axis: [f64; 3], inertia: f64, speed: f64, told: Told) -> Result<WheelA
     let held = Wheel::new(axis.into(), inertia, speed).map_err(|error| error.to_string())?;
     match told {
         Told { free: true, torque: Some(_), .. } => {
-            Err("free and torque exclude each other; before and behind its motor's work a wheel is free"
-                .into())
+            Err("give free or torque, not both; a wheel is free before and after its motor acts".into())
         }
         Told { torque: Some(torque), from, until, .. } => {
             let times = [from.unwrap_or(0.0), until.unwrap_or(f64::INFINITY)];
@@ -64,7 +63,7 @@ fn driven(axis: [f64; 3], inertia: f64, speed: f64, told: Told) -> Result<WheelA
         }
         Told { from: None, until: None, free: true, .. } => Ok(WheelAtStart::free(held)),
         Told { from: None, until: None, .. } => Ok(WheelAtStart::held(held)),
-        _ => Err("from and until are of a motor; give its torque too".into()),
+        _ => Err("from and until belong to a motor; give its torque too".into()),
     }
 }
 
@@ -74,8 +73,7 @@ fn driven(axis: [f64; 3], inertia: f64, speed: f64, told: Told) -> Result<WheelA
 /// As [`of_toml`], and a value that is no list of tables.
 pub fn list_of_toml(section: &Section<'_>) -> Result<Vec<WheelAtStart>, Error> {
     let needed = || {
-        section
-            .at("wheels", "needed is a list of tables {axis = [x, y, z], inertia = J, speed = \"3000rpm\"}")
+        section.at("wheels", "expected a list of tables {axis = [x, y, z], inertia = J, speed = \"3000rpm\"}")
     };
     let Some(value) = section.value("wheels") else { return Ok(Vec::new()) };
     let DeValue::Array(tables) = value.get_ref() else { return Err(needed()) };
@@ -107,7 +105,7 @@ pub fn of_toml(section: &Section<'_>) -> Result<WheelAtStart, Error> {
     let free = match section.value("free").map(Spanned::get_ref) {
         None => false,
         Some(DeValue::Boolean(free)) => *free,
-        Some(_) => return Err(section.at("free", "needed is true or false")),
+        Some(_) => return Err(section.at("free", "expected true or false")),
     };
     let [torque, from, until] = [one("torque")?, section.seconds("from")?, section.seconds("until")?];
     let wheel = driven(axis, inertia, speed, Told { free, torque, from, until });
@@ -119,17 +117,17 @@ pub fn of_toml(section: &Section<'_>) -> Result<WheelAtStart, Error> {
 /// # Errors
 /// What is wrong with it.
 pub fn of_json(object: &Value) -> Result<WheelAtStart, String> {
-    let keys = object.as_object().ok_or("a wheel is no object of JSON")?;
+    let keys = object.as_object().ok_or("a wheel is not a JSON object")?;
     if let Some(unknown) = keys.keys().find(|key| !KEYS.contains(&key.as_str())) {
         return Err(format!("\"{unknown}\" is unknown in a wheel; known: {}", KEYS.join(", ")));
     }
     let number = |key: &str| match &object[key] {
         Value::Null => Ok(None),
-        value => value.as_f64().map(Some).ok_or_else(|| format!("\"{key}\" of a wheel is no number")),
+        value => value.as_f64().map(Some).ok_or_else(|| format!("\"{key}\" of a wheel is not a number")),
     };
     let needed = |key: &str| format!("\"{key}\" is missing in a wheel");
     let axis: [f64; 3] = serde_json::from_value(object["axis"].clone())
-        .map_err(|_| "\"axis\" of a wheel is no list of 3 numbers".to_string())?;
+        .map_err(|_| "\"axis\" of a wheel is not a list of 3 numbers".to_string())?;
     let inertia = number("inertia")?.ok_or_else(|| needed("inertia"))?;
     let told = match &object["speed"] {
         Value::String(text) => Speed::Text(text.clone()),
@@ -163,7 +161,7 @@ impl Speed {
     /// In rad/s: a text has its unit behind the number, and a number its unit beside it.
     fn in_unit(self, unit: Option<&str>) -> Result<f64, String> {
         match (self, unit) {
-            (Speed::Text(_), Some(_)) => Err("has its unit behind the number; leave speed_unit out".into()),
+            (Speed::Text(_), Some(_)) => Err("already has a unit; leave speed_unit out".into()),
             (Speed::Text(text), None) if text.trim().parse::<f64>().is_ok() => {
                 Err(format!("'{text}' has no unit; write it as \"3000rpm\" or \"300rad/s\""))
             }
@@ -191,7 +189,7 @@ fn rate(unit: &str) -> Result<RateUnit, String> {
         "rad/s" => Ok(RateUnit::RadiansPerSecond),
         "deg/s" => Ok(RateUnit::DegreesPerSecond),
         "rpm" => Ok(RateUnit::RevolutionsPerMinute),
-        _ => Err(format!("'{unit}' is no unit of rates here; known: rad/s, deg/s, rpm")),
+        _ => Err(format!("unknown unit of rates '{unit}'; known: rad/s, deg/s, rpm")),
     }
 }
 
@@ -227,14 +225,11 @@ mod tests {
         let error = |text: &str| parse(text).unwrap_err();
         assert!(error("1,0,0,0.1").starts_with("no '@' and speed"));
         assert!(error("1,0,0@3").starts_with("3 numbers before '@', 4 needed"));
-        assert_eq!(
-            error("1,0,0,0.1@3Hz"),
-            "the speed: 'Hz' is no unit of rates here; known: rad/s, deg/s, rpm"
-        );
+        assert_eq!(error("1,0,0,0.1@3Hz"), "the speed: unknown unit of rates 'Hz'; known: rad/s, deg/s, rpm");
         assert!(error("0,0,0,0.1@3").contains("no direction"));
         assert!(error("1,0,0,0.1@3,spins").starts_with("'spins' is unknown"));
-        assert!(error("1,0,0,0.1@3,free,torque=1").starts_with("free and torque exclude"));
-        assert!(error("1,0,0,0.1@3,until=1").starts_with("from and until are of a motor"));
+        assert!(error("1,0,0,0.1@3,free,torque=1").starts_with("give free or torque"));
+        assert!(error("1,0,0,0.1@3,until=1").starts_with("from and until belong to a motor"));
         assert!(
             error("1,0,0,0.1@3,torque=1,until=-1")
                 .starts_with("the motor of the wheel works from 0 s to -1 s")

@@ -44,7 +44,7 @@ pub fn form(flag: &str, text: &str) -> Result<Option<Form>, Error> {
             let piece = Piece { look, turn: UnitQuaternion::identity(), at: Vector3::zeros() };
             Form { pieces: vec![piece], center_of_mass, remark: None }
         }
-        "json" => nothing(Vector3::zeros(), Some("the file tells no shape".into())),
+        "json" => nothing(Vector3::zeros(), Some("the file has no shape".into())),
         kind => {
             let text = super::model(path)?;
             let language = language(kind, &text);

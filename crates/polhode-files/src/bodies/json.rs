@@ -35,7 +35,7 @@ pub(super) fn tensors(flag: &str, path: &Path) -> Result<Vec<Named>, Error> {
     let each = objects.into_iter().map(|(name, object)| {
         let matrix = |key: &str| serde_json::from_value::<[[f64; 3]; 3]>(object[key].clone()).ok();
         if !object["inertia"].is_null() && matrix("inertia").is_none() {
-            return Err(refused(&"\"inertia\" is no 3 x 3 numbers"));
+            return Err(refused(&"\"inertia\" is not an array of 3 x 3 numbers"));
         }
         let mut remarks: Vec<String> = Vec::new();
         let entries = match (matrix("inertia"), matrix("shape")) {
@@ -53,7 +53,7 @@ pub(super) fn tensors(flag: &str, path: &Path) -> Result<Vec<Named>, Error> {
         let wheels = match &object["wheels"] {
             Value::Null => Ok(Vec::new()),
             Value::Array(wheels) => wheels.iter().map(wheel::of_json).collect(),
-            _ => Err("\"wheels\" is no list".into()),
+            _ => Err("\"wheels\" is not a list".into()),
         };
         let wheels = wheels.map_err(|error| refused(&error))?;
         let own = warnings(&object).map_err(|error| refused(&error))?;
@@ -69,7 +69,7 @@ pub(super) fn tensors(flag: &str, path: &Path) -> Result<Vec<Named>, Error> {
 
 /// What a fit wrote of the limits of its answer.
 fn warnings(of: &Value) -> Result<Vec<String>, &'static str> {
-    const RULE: &str = "\"warnings\" is no list of texts";
+    const RULE: &str = "\"warnings\" is not a list of texts";
     let text = |warning: &Value| warning.as_str().map(|text| visible(text).into_owned()).ok_or(RULE);
     match &of["warnings"] {
         Value::Null => Ok(Vec::new()),

@@ -62,13 +62,13 @@ pub fn is_mesh(text: &str) -> bool {
 /// A mesh.
 pub fn check_size(flag: &str, name: &str) -> Result<(), Error> {
     if is_mesh(name) {
-        let rule = "a mesh file tells no mass, and here the size of the inertia counts";
+        let rule = "a mesh file has no mass, and here the inertia is needed in kg m^2";
         let remedy = "write a TOML file with the mesh as a [[part]] with its mass";
         return Err(Error::input(flag, name, rule, remedy));
     }
     if catalogue::body(name).is_some_and(|body| body.unit == "ratio") {
         warn(&format!(
-            "{name}: the catalogue has ratios of moments, which are taken as kg m^2, and their size counts"
+            "{name}: the catalogue has only ratios of its moments; they are taken as kg m^2, and the result depends on it"
         ));
     }
     Ok(())
@@ -142,7 +142,7 @@ fn tensors(flag: &str, path: &Path, link: Option<&str>) -> Result<Vec<Named>, Er
         _ => Err(Error::input(
             flag,
             &path.display().to_string(),
-            "the ending names no kind of file with a body",
+            "no bodies are read from files with this ending",
             "name a file .json, .toml, .stl, .obj, .ply, .urdf, .mjcf, .sdf or .xml",
         )),
     }

@@ -55,7 +55,7 @@ pub(super) fn read(path: &Path) -> Result<Parts, Error> {
             ("part", DeValue::Array(parts)) => {
                 for part in parts {
                     let Some(keys) = part.get_ref().as_table() else {
-                        return Err(file.error(part.span().start, "key 'part': needed is a table [[part]]"));
+                        return Err(file.error(part.span().start, "key 'part': expected a table [[part]]"));
                     };
                     let section = Section { file: &file, place: part.span().start, keys };
                     let (body, piece) = Part(section).body()?;
@@ -69,8 +69,7 @@ pub(super) fn read(path: &Path) -> Result<Parts, Error> {
             }
             ("name", DeValue::String(_)) => {}
             (other, _) => {
-                let message =
-                    format!("key '{other}': unknown here; needed are [[part]] tables, and [[wheels]]");
+                let message = format!("key '{other}': unknown here; expected tables [[part]] and [[wheels]]");
                 return Err(file.error(key.span().start, &message));
             }
         }
@@ -139,7 +138,8 @@ impl Part<'_> {
         };
         let turn = match self.0.numbers::<4>("turn")? {
             Some(q) => Some(turn(q).ok_or_else(|| {
-                self.0.at("turn", "the zero quaternion is no turn; [1, 0, 0, 0] leaves a part as it is")
+                self.0
+                    .at("turn", "the zero quaternion is not a rotation; [1, 0, 0, 0] leaves a part as it is")
             })?),
             None => None,
         };

@@ -84,7 +84,7 @@ impl Element {
     pub(super) fn single(&self, tag: &'static str) -> Result<Option<&Element>, String> {
         let mut named = self.named(tag);
         match (named.next(), named.next()) {
-            (_, Some(second)) => Err(second.error("is there a second time; leave one out")),
+            (_, Some(second)) => Err(second.error("is given twice; leave one out")),
             (first, None) => Ok(first),
         }
     }
@@ -182,7 +182,7 @@ fn blank_declaration(text: &str) -> String {
 
 fn refusal(path: &Path, text: &str, wrapped: &roxmltree::Error) -> Error {
     if text.contains("<!DOCTYPE") {
-        let rule = "a document type stands in it, and entities are not expanded";
+        let rule = "it has a document type, and entities are not expanded";
         return Error::input(&path.display().to_string(), "", rule, "remove <!DOCTYPE ...>");
     }
     let error = match Document::parse(text) {

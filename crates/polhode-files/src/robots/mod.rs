@@ -78,7 +78,7 @@ pub fn read(language: Language, path: &Path, text: &str, root: Option<&Path>) ->
         let place = link.place.clone().unwrap_or_default();
         match places.get(&link.name) {
             Some(first) => {
-                let defect = format!("{place}: the name stands at {first} already; give each link its own");
+                let defect = format!("{place}: the name is already used at {first}; give each link its own");
                 link.defect = Some(visible(&defect).into());
             }
             None => {
@@ -101,7 +101,8 @@ pub(crate) fn with_namesakes(
     if !document.children.iter().any(|root| roots.contains(&root.tag.as_str())) {
         let found = document.children.first().map_or(String::new(), |root| format!("<{}>", root.tag));
         let known: Vec<String> = roots.iter().map(|root| format!("<{root}>")).collect();
-        let rule = format!("no {} model; it begins with one of {}", language.name(), known.join(", "));
+        let rule =
+            format!("no {} model; such a file begins with one of {}", language.name(), known.join(", "));
         return Err(Error::input(&path.display().to_string(), &found, &rule, "name another file"));
     }
     Ok(match language {
@@ -456,7 +457,7 @@ mod tests {
     #[test]
     fn what_mujoco_refuses_of_meshes_and_shells_is_a_defect() {
         for (mesh, geom, says) in [
-            ("", "type='mesh' mesh='m' shellinertia='true'", "<geom>: shellinertia is of primitives alone"),
+            ("", "type='mesh' mesh='m' shellinertia='true'", "<geom>: shellinertia is for primitives only"),
             ("", "type='mesh' mesh='m' fromto='0 0 0 0 0 1'", "<geom>: fromto does not belong to the type"),
             ("", "size='1' shellinertia='True'", "<geom>: shellinertia: 'True' is unknown; known:"),
             ("class='none'", "type='mesh' mesh='m'", "<mesh>: no default class 'none'"),
@@ -564,7 +565,7 @@ mod tests {
         ] {
             let found = defects(language, &text);
             assert_eq!(found.len(), 1, "{tag}");
-            assert_eq!(found[0].1, format!("model:1: <{tag}>: is there a second time; leave one out"));
+            assert_eq!(found[0].1, format!("model:1: <{tag}>: is given twice; leave one out"));
         }
     }
 
@@ -578,6 +579,6 @@ mod tests {
         assert_eq!(found.iter().filter(|(_, defect)| !defect.is_empty()).count(), 1, "{found:?}");
         let (name, defect) = &found[3];
         assert_eq!(name, "arm");
-        assert_eq!(defect, "model:4: the name stands at model:2 already; give each link its own");
+        assert_eq!(defect, "model:4: the name is already used at model:2; give each link its own");
     }
 }

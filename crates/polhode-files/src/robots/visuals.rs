@@ -78,7 +78,7 @@ fn piece(shown: &Element, path: &Path) -> Result<Piece, String> {
             let scaled = surface.mapped(|at| at.component_mul(&scale));
             Look::Surface(scaled.map_err(|error| format!("its mesh '{name}': {error}"))?)
         }
-        other => return Err(shown.error(&format!("<{other}> is no shape that is known here"))),
+        other => return Err(shown.error(&format!("unknown shape <{other}>"))),
     };
     if let Look::Solid(solid) = &look
         && !solid.sizes().iter().all(|size| *size > 0.0 && size.is_finite())

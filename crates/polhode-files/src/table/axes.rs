@@ -46,7 +46,7 @@ impl SignedAxes {
                 None => (1.0, name.strip_prefix('+').unwrap_or(name)),
             };
             let place = ["x", "y", "z"].into_iter().position(|axis| axis == letter);
-            columns[k] = place.ok_or(format!("'{name}' is no axis; {rule}"))?;
+            columns[k] = place.ok_or(format!("'{name}' is not an axis; {rule}"))?;
             signs[k] = sign;
         }
         match (0..3).all(|axis| columns.contains(&axis)) {

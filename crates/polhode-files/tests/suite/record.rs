@@ -46,7 +46,7 @@ fn broken_rows_are_named_by_line_and_column() {
         ),
         (
             "t,wx (mph),wy,wz\n1,1,2,3\n",
-            "a.csv, line 1, column 2 (wx (mph)): 'mph': no unit that is known here; known: rad/s, deg/s, rpm",
+            "a.csv, line 1, column 2 (wx (mph)): 'mph': unknown unit; known: rad/s, deg/s, rpm",
         ),
         ("t,wx,wy,wz\n", "a.csv: no rows"),
     ] {

@@ -94,7 +94,7 @@ fn what_cannot_be_read_is_refused_with_line_and_column() {
     for (text, columns, says) in [
         ("", "", ": no rows"),
         ("t,w,x,y,z\n", "", ": no rows"),
-        ("t,a,b\n0,1,2\n", "", ", line 1: neither an attitude nor an angular velocity is told by the names"),
+        ("t,a,b\n0,1,2\n", "", ", line 1: no attitude and no angular velocity among the columns"),
         (
             "a,w,x,y,z\n0,1,0,0,0\n",
             "",
@@ -119,7 +119,7 @@ fn what_cannot_be_read_is_refused_with_line_and_column() {
         (
             "t,wx,wy,wz,gyro_x,gyro_y,gyro_z\n",
             "",
-            ", line 1: two angular velocities: from 'wx' and from 'gyro_x'",
+            ", line 1: two angular velocities: one from column 'wx' on, one from 'gyro_x'",
         ),
         ("t,qpos0,qpos1\n", "", ", line 1: 2 columns qpos and 0 columns qvel are not those of free joints"),
     ] {
@@ -156,7 +156,7 @@ fn dumps_tell_their_time_before_the_step() {
         assert!(near(rates[1][0], 0.25 / unit), "{style}: {rates:?}");
     }
     let error = found(&text.replace("\nlj\n", "\nreel\n"), "").unwrap_err();
-    assert!(error.starts_with(", line 2: 'reel': no unit that is known here; known: lj, real"), "{error}");
+    assert!(error.starts_with(", line 2: 'reel': unknown unit; known: lj, real"), "{error}");
     let found = found(&text, "").unwrap();
     assert!(!found.counts_steps);
     assert_eq!(found.bodies[0].1.times, [0.0, 0.5]);

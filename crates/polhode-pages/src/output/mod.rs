@@ -44,7 +44,7 @@ impl Output {
     pub fn to_file(flag: &'static str, path: &Path) -> Result<Self, Error> {
         if path.as_os_str() == "-" {
             let remedy = if flag == "--out" { "leave it out, and rows go there" } else { "name a file" };
-            return Err(Error::input(flag, "-", "stands for standard output, which is no file", remedy));
+            return Err(Error::input(flag, "-", "means standard output, which is not a file", remedy));
         }
         check_is_no_input(flag, path)?;
         claimed::claim(flag, path)?;

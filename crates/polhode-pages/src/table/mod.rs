@@ -359,7 +359,7 @@ impl Format {
             ),
             (Some(format), _) | (None, Some(format)) => Ok(format),
             (None, None) if ending.is_some() => refused(
-                "the ending names no format that is written here",
+                "no format is written with this ending",
                 "name a file .csv, .json or .txt, or give --format too",
             ),
             (None, None) => Ok(Self::Csv),

@@ -117,13 +117,13 @@ impl Outcome {
         all.extend(verdict.faults.iter().map(Fault::to_string));
         if verdict.suspect == Suspect::AnglesOrder {
             all.push(
-                "columns roll, pitch and yaw stand for turns about x, y and z, and the rows turn about other axes; where the program \
-                 means others, name the columns by --columns e1=NAME,e2=NAME,e3=NAME"
+                "columns roll, pitch and yaw are turns about x, y and z, and the rows turn about other axes; if other angles \
+                 are meant, name the columns by --columns e1=NAME,e2=NAME,e3=NAME"
                     .into(),
             );
         }
         if let Some(tie) = &verdict.tie {
-            all.push(format!("{} readings fit alike: {}", tie.readings.len(), tie.reason));
+            all.push(format!("{} readings fit equally well: {}", tie.readings.len(), tie.reason));
         }
         all
     }

@@ -42,7 +42,11 @@ fn one(outcome: &Outcome) -> Vec<Block> {
         Block::Paragraph(format!("Reading: {}.", outcome.reading())),
     ];
     if let Some(tie) = &verdict.tie {
-        parts.push(Block::Paragraph(format!("{} readings fit alike: {}.", tie.readings.len(), tie.reason)));
+        parts.push(Block::Paragraph(format!(
+            "{} readings fit equally well: {}.",
+            tie.readings.len(),
+            tie.reason
+        )));
         parts.push(Block::List(tie.readings.iter().map(ToString::to_string).collect()));
     }
     parts.extend(attitude(outcome).into_iter().map(Block::Paragraph));

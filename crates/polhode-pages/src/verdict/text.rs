@@ -23,7 +23,7 @@ fn one(name: &str, outcome: &Outcome) -> String {
     push(&mut lines, &format!("{name}{of}: {}{suspect}", outcome.judgement()), "");
     push(&mut lines, &format!("Reading: {}.", outcome.reading()), "  ");
     if let Some(tie) = &verdict.tie {
-        push(&mut lines, &format!("{} readings fit alike: {}.", tie.readings.len(), tie.reason), "  ");
+        push(&mut lines, &format!("{} readings fit equally well: {}.", tie.readings.len(), tie.reason), "  ");
         for reading in &tie.readings {
             push(&mut lines, &format!("- {}", reading), "    ");
         }
@@ -86,13 +86,13 @@ pub(super) fn attitude(outcome: &Outcome) -> Vec<String> {
     if let Some(noise) = verdict.noise {
         let given = [noise.attitude, noise.rates].map(|sigma| format!("{sigma:.1e}"));
         lines.push(format!(
-            "Undecided: it agrees with the motion within noise of {} rad and {} rad/s (standard deviations of a component). If the record has that noise, say so: --noise {}.",
+            "Undecided: it agrees with the motion within noise of {} rad and {} rad/s (standard deviations of a component). If the record has that noise, declare it: --noise {}.",
             given[0], given[1], given.join(",")
         ));
     }
     if let Some(difference) = &outcome.against {
         lines.push(format!(
-            "Against {}: {} rad at t = {} s, of {} rows at the same times; {} rad are allowed.",
+            "Against {}: largest difference {} rad at t = {} s, among {} rows at the same times; {} rad are allowed.",
             difference.name,
             size(difference.largest),
             to_digits(difference.at, 6),
@@ -126,7 +126,7 @@ pub(super) fn causes(outcome: &Outcome) -> Vec<String> {
 fn integrator(found: &Signature) -> Vec<String> {
     let order = found.order.map_or(String::new(), |order| format!(" (order {order})"));
     let mut lines = vec![format!(
-        "Like {}{order} with h = {} s, {} a row. Run from the first row, that method is off by {} rad at t = {} s; the record is off by {} rad.",
+        "The errors are like those of {}{order} with h = {} s, {} a row. Run from the first row, that method has an error of {} rad at t = {} s; the record has {} rad.",
         found.method,
         to_digits(found.step, 6),
         if found.steps_per_row == 1 { "one step".into() } else { format!("{} steps", found.steps_per_row) },
@@ -136,7 +136,7 @@ fn integrator(found: &Signature) -> Vec<String> {
     )];
     if let (Some(predicted), Some(measured)) = (found.predicted_energy_change, found.measured_energy_change) {
         lines.push(format!(
-            "Relative change of the energy up to then: {} by that method, {} in the record.",
+            "Relative change of the energy up to then: {} with that method, {} in the record.",
             size(predicted),
             size(measured)
         ));

@@ -52,7 +52,7 @@ impl<'e> Geom<'e, '_> {
                 return Err(self.element.error("fromto does not belong to the type mesh"));
             }
             ("mesh", Some(_)) if self.is_shell()? => {
-                let rule = "shellinertia is of primitives alone; write inertia=\"shell\" at the <mesh>";
+                let rule = "shellinertia is for primitives only; write inertia=\"shell\" at the <mesh>";
                 return Err(self.element.error(rule));
             }
             ("mesh", Some(mesh)) => {
@@ -152,7 +152,7 @@ impl<'e> Geom<'e, '_> {
             "box" => Solid::Box([2.0 * a, 2.0 * b, 2.0 * c]),
             _ => {
                 return Err(self.element.error(&format!(
-                    "type '{kind}' has no mass that is computed; known: sphere, capsule, cylinder, ellipsoid, box, mesh"
+                    "the mass of type '{kind}' is not computed; known: sphere, capsule, cylinder, ellipsoid, box, mesh"
                 )));
             }
         };

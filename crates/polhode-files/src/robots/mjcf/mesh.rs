@@ -79,7 +79,7 @@ impl<'e> Meshes<'e> {
         };
         let at = Vector3::from(asset.optional::<3>("refpos")?.unwrap_or_default());
         let back = match asset.optional::<4>("refquat")? {
-            Some(q) => turn(q).ok_or("refquat is zero; 1 0 0 0 is no turn")?.inverse(),
+            Some(q) => turn(q).ok_or("refquat is zero; 1 0 0 0 is the identity")?.inverse(),
             None => UnitQuaternion::identity(),
         };
         let map = |v: Vector3<f64>| (back * (v - at)).component_mul(&Vector3::from(scale));

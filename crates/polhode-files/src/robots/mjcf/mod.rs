@@ -130,7 +130,7 @@ impl<'e> Model<'e> {
         let other = element.children.iter().filter(|part| part.tag != "inertial").find(has_tensor);
         let stated = match (own, other) {
             (Err(error), _) => Err(error),
-            (_, Some(other)) => Err(other.error("states a tensor, which is read of <inertial> alone")),
+            (_, Some(other)) => Err(other.error("states a tensor, which is read only in <inertial>")),
             (Ok(Some(inertial)), _) if self.compiler.source != Source::Geoms => self.stated(inertial),
             (Ok(_), _) if self.compiler.source == Source::Inertial => Ok(None),
             (Ok(own), _) => match self.of_geoms(&geoms.unwrap_or_default()) {
@@ -223,7 +223,7 @@ impl<'e> Model<'e> {
         let read = || -> Result<(usize, Vector3<f64>, [f64; 3]), String> {
             let [count] = element.needed::<1>("count")?;
             if count < 0.0 || count.fract() != 0.0 {
-                return Err(element.error(&format!("count: {count} is no number of copies")));
+                return Err(element.error(&format!("count: {count} is not a number of copies")));
             }
             let offset = Vector3::from(element.optional::<3>("offset")?.unwrap_or_default());
             let known = |turn: &&&str| **turn != "euler" && element.attribute(turn).is_some();

@@ -39,7 +39,7 @@ pub(super) fn orientation(element: &Element, compiler: &Compiler) -> Result<Unit
     };
     let found = found.ok_or_else(|| {
         let rule = match attribute {
-            "quat" => "is zero; 1 0 0 0 is no turn",
+            "quat" => "is zero; 1 0 0 0 is the identity",
             "xyaxes" => "spans no plane; give two axes that are not parallel",
             "euler" => "has no meaning, because eulerseq is not three of the letters x, y, z, X, Y, Z",
             _ => "has a zero axis; give its direction",
