@@ -133,10 +133,12 @@ impl Advise {
         }
         match (advice.best.whole_time, actual, self.energy_error) {
             (false, None, _) => {
-                warn("the error over the whole time was not seen but extrapolated; --check runs it");
+                warn("the error at the end is extrapolated from a shorter run; --check runs to the end");
             }
             (false, Some(_), Some(_)) => {
-                warn("the energy error was not seen but extrapolated; --check is of the attitude alone");
+                warn(
+                    "the energy error is extrapolated from a shorter run; --check measures only the attitude error",
+                );
             }
             _ => {}
         }

@@ -33,7 +33,7 @@ pub(crate) fn check_turn(place: &str, value: f64, turn: f64) -> Result<(), Error
         return Ok(());
     }
     let rule = format!(
-        "the body turns by {} rad up to then, about a step each, and a run has fewer than {MOST_STEPS:e}",
+        "the body turns by {} rad up to then, with about one step a rad, and a run has fewer than {MOST_STEPS:e}",
         counted(turn)
     );
     Err(Error::input(
@@ -57,12 +57,12 @@ pub(crate) fn check_all(place: &str, members: u64, steps: f64) -> Result<(), Err
                 counted(steps),
                 counted(all)
             ),
-            "share the members out with --shard K/N, or take a larger step",
+            "split the members with --shard K/N, or use a larger step",
         )
     } else {
         (
             format!("{} steps to the last time, and a run has fewer than {MOST_STEPS:e}", counted(steps)),
-            "take a larger step or earlier times",
+            "use a larger step or earlier times",
         )
     };
     Err(Error::input(place, "", &rule, remedy))
@@ -72,7 +72,7 @@ pub(crate) fn check_all(place: &str, members: u64, steps: f64) -> Result<(), Err
 pub(crate) fn warn_coarse(place: &str, step: f64, speed: f64) {
     if step * speed > 1.0 {
         warn(&format!(
-            "{place}: '{}': turns the body by {:.1} rad per step; above 1 rad no stepping method is accurate; take a smaller step",
+            "{place}: '{}': turns the body by {:.1} rad per step; above 1 rad no stepping method is accurate; use a smaller step",
             short(step),
             step * speed
         ));
@@ -145,11 +145,11 @@ mod tests {
 
     #[test]
     fn refusals_name_the_bound() {
-        assert!(check("--step", 1e-12, 9.9e11, "take a larger step").is_ok());
-        let error = check("--step", 1e-12, 1e12, "take a larger step").unwrap_err().to_string();
+        assert!(check("--step", 1e-12, 9.9e11, "use a larger step").is_ok());
+        let error = check("--step", 1e-12, 1e12, "use a larger step").unwrap_err().to_string();
         assert_eq!(
             error,
-            "--step: '1e-12': asks for 1e12 steps, and a run has fewer than 1e12; take a larger step"
+            "--step: '1e-12': asks for 1e12 steps, and a run has fewer than 1e12; use a larger step"
         );
         let all = check_all("spec.toml:3", 1_000_000, 1e9).unwrap_err().to_string();
         assert!(

@@ -18,7 +18,7 @@ pub(crate) fn attitudes(
     refused: impl Fn(&str, &str) -> Error,
 ) -> Result<(Trajectory, Reading), Error> {
     if found.counts_steps {
-        return Err(refused("counts steps of a length that it does not tell", "write its times in s"));
+        return Err(refused("counts steps of unknown length", "write its times in s"));
     }
     if !found.second_attitude.is_empty() {
         let second = found.second_attitude.join(", ");
@@ -35,8 +35,10 @@ pub(crate) fn attitudes(
         }
     };
     let open = match (&rows.attitude, claims.quaternion) {
-        (Some(Attitudes::Quaternions(_)), None) => Some("its quaternions do not say where the scalar stands"),
-        (Some(Attitudes::Angles(_)), _) => Some("its Euler angles do not say their sequence"),
+        (Some(Attitudes::Quaternions(_)), None) => {
+            Some("its quaternions do not show whether the scalar is first or last")
+        }
+        (Some(Attitudes::Angles(_)), _) => Some("the sequence of its Euler angles is not known"),
         _ => None,
     };
     if let Some(rule) = open {
@@ -53,7 +55,7 @@ pub(crate) fn attitudes(
         let attitude = reading.attitude(&rows, row);
         let is_number = attitude.is_some_and(|q| q.components().iter().all(|x| x.is_finite()));
         if !is_number {
-            let rule = format!("the attitude at t = {} s is too large for a number", short(t));
+            let rule = format!("the attitude at t = {} s is outside the range of a double", short(t));
             return Err(refused(&rule, "write its attitudes in columns q_w, q_x, q_y, q_z"));
         }
     }
@@ -92,7 +94,7 @@ pub(crate) fn shift(
     let Some(other) = record.begins else {
         let (times, since) = (&own.times.0, own.since.as_deref().unwrap_or_default());
         return Err(refused(&format!(
-            "its times are {times}, which are read from the first row on, {}, and those of the record count from no such moment",
+            "its times are {times} and are counted from its first row, {}; the times of the record have no such origin",
             visible(since)
         )));
     };

@@ -154,18 +154,16 @@ impl Reference {
     pub(super) fn judge(&self, name: &str) -> Result<(), Error> {
         let (reference, errors) = (&self.name, self.errors.len());
         let failure = if errors == 0 {
-            format!(
-                "{name}: no attitude after the start is at a time of {reference}, and nothing is compared"
-            )
+            format!("{name}: nothing is compared, as no attitude after the start is at a time of {reference}")
         } else if 2 * self.beyond > errors {
             let beyond = self.beyond;
             format!(
-                "{name}: {reference} contradicts the attitudes: {beyond} of {errors} errors are beyond twice their 95 %"
+                "{name}: {reference} contradicts the attitudes: {beyond} of {errors} errors exceed twice their 95 % bound"
             )
         } else if let Some((far, at)) = self.far() {
             let at = rounded(at);
             format!(
-                "{name}: {reference} contradicts the attitudes: {far} of {errors} errors are beyond ten times their 95 % and ten times \
+                "{name}: {reference} contradicts the attitudes: {far} of {errors} errors exceed ten times their 95 % bound and ten times \
                  the median error, the first at t = {at} s"
             )
         } else {
@@ -188,20 +186,20 @@ impl Reference {
     pub(super) fn tell(&self) {
         let errors = self.errors.len();
         let verdict = if errors == 0 {
-            "none of them after a start"
+            "none is after a start"
         } else if 2 * self.beyond > errors {
-            "the budget is contradicted"
+            "the 95 % bounds are contradicted"
         } else if self.far().is_some() {
-            "the budget does not hold everywhere"
+            "the 95 % bounds do not hold everywhere"
         } else if 2 * self.outside > errors {
-            "the budget is too small"
+            "the 95 % bounds are too small"
         } else {
-            "the budget holds"
+            "the 95 % bounds hold"
         };
         tell(
             "note",
             &format!(
-                "{}: {} {} compared, read as {}; largest error {:.1e} rad at t = {} s, {} inside their 95 %: {verdict}",
+                "{}: {} {} compared, read as {}; largest error {:.1e} rad at t = {} s, {} within their 95 % bound: {verdict}",
                 self.name,
                 self.compared,
                 if self.compared == 1 { "row" } else { "rows" },
@@ -216,13 +214,13 @@ impl Reference {
         let rows = self.asked.min(self.rows.times.len());
         if 2 * self.compared < rows {
             warn(&format!(
-                "{}: only {} of {rows} rows are at a time of both; look at the unit of its times",
+                "{}: only {} of {rows} rows are at a time of both; check the unit of its times",
                 self.name, self.compared
             ));
         }
         if 2 * self.outside > errors {
             warn(&format!(
-                "{}: most errors are beyond their 95 %; look at the units of the readings, the convention of the reference and the deviations that are given",
+                "{}: most errors exceed their 95 % bound; check the units of the readings, the convention of the reference and the given standard deviations",
                 self.name
             ));
         }

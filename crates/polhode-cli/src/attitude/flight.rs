@@ -33,9 +33,9 @@ impl Apart {
         let Apart { deviations, time, angle } = self;
         if deviations > Estimate::CONTRADICTION {
             warn(&format!(
-                "at t = {} s the exact motion of the body and the integrated readings are {angle:.2e} rad apart, {deviations:.1} standard \
-                 deviations: a torque such as drag, a body that is not quite this one, or an error of the sensor that is not stated \
-                 (--bias, --scale-error); attitude_sigma does not contain it",
+                "at t = {} s the exact motion of the body and the integrated readings are {angle:.2e} rad apart, \
+                 {deviations:.1} standard deviations: a torque such as drag acts, the tensor is not exact, or an error of the \
+                 sensor is not stated (--bias, --scale-error); attitude_sigma does not include it",
                 rounded(time)
             ));
         }
@@ -53,11 +53,11 @@ pub(super) fn smoothed(
     let Described { inertia, weight_moment, wheels, .. } = described(body)?;
     let refused = |rule: &str, remedy: &str| Err(Error::input("--body", body, rule, remedy));
     if weight_moment != [0.0; 3] {
-        return refused("is a top under gravity, and a flight is that of a free body", "name a free body");
+        return refused("is a top under gravity, and --body needs a free body here", "name a free body");
     }
     if !wheels.is_empty() {
         return refused(
-            "carries wheels, and a flight is that of a body without",
+            "carries wheels, and --body needs a body without wheels here",
             "name a body without wheels",
         );
     }

@@ -105,7 +105,7 @@ impl Integration {
             Some(last.error(other.attitude().into()).norm())
         };
         let line = apart(self.trapezoid).map_or(String::new(), |angle| {
-            format!("; the trapezoid with coning would be off by {angle:.1e} rad from it")
+            format!("; the trapezoid with coning would differ by {angle:.1e} rad")
         });
         let (rule, time) = (rule::words(self.course.rule), rounded(last.time));
         tell("note", &format!("{rule}; at t = {time} s: {}{line}", parts.join(", ")));
@@ -114,8 +114,8 @@ impl Integration {
         }
         if let Some(angle) = apart(self.averages) {
             let message = format!(
-                "the readings are taken for rates at the times of their rows, as their unit allows; were they averages since the row \
-                 before, the attitude at the end would differ by {angle:.1e} rad; --kind says which they are"
+                "the readings are taken as rates at the times of their rows; if they are averages since the row before, the \
+                 attitude at the end differs by {angle:.1e} rad; state which by --kind"
             );
             if angle > 2.0 * budget.sigma() { warn(&message) } else { tell("note", &message) }
         }

@@ -192,7 +192,7 @@ impl Readings {
             }
         };
         let rule = format!(
-            "{cause} from {} s to {} s: how the body turned in it is not known, and the attitude behind it neither",
+            "{cause} from {} s to {} s: the turn in it is not known, and so neither is the attitude after it",
             short(end),
             short(*start)
         );
@@ -200,7 +200,7 @@ impl Readings {
             &self.place(segment, 0),
             "",
             &rule,
-            "give --window t0,t1 for one part, or --restart to begin again behind each gap",
+            "give --window t0,t1 for one part, or --restart to begin again after each gap",
         ))
     }
 
@@ -258,8 +258,8 @@ impl Readings {
         match error {
             StrapdownError::HalfTurn { angle, .. } => {
                 let rule = format!(
-                    "a turn by {} rad since the row before, more than half a turn (pi): samples so far apart cannot be told \
-                     from those of another motion (aliasing)",
+                    "a turn by {} rad since the row before, more than half a turn (pi): between samples so far apart the motion \
+                     is ambiguous (aliasing)",
                     rounded(*angle)
                 );
                 Error::input(&place, "", &rule, "check --rate-unit and --time-unit, or sample more often")

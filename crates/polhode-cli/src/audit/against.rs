@@ -120,7 +120,11 @@ impl Golden {
 
     /// How much of both was compared, where it is not all of this trajectory.
     pub(super) fn note(&self, record: &Trajectory, found: &Difference) -> Option<String> {
-        let open = if found.is_whole { "" } else { "; without the others the record is not called right" };
+        let open = if found.is_whole {
+            ""
+        } else {
+            "; for the verdict right, all times of one file must be in the other"
+        };
         (found.rows < found.of).then(|| self.coverage(record, found.rows) + open)
     }
 

@@ -60,8 +60,8 @@ impl ReadingArguments {
     /// Refuses moments in any order where none are given, or where wheels stay on their axes.
     pub(super) fn check_order(&self, has_body: bool, has_wheels: bool) -> Result<(), Error> {
         let rule = match (has_body, has_wheels) {
-            (false, _) => "no moments are given that could belong to other axes",
-            (true, true) => "the wheels are along axes of the body, which stay where they are",
+            (false, _) => "no moments are given",
+            (true, true) => "a body with wheels has its moments in a fixed order",
             (true, false) => return Ok(()),
         };
         if self.any_order { Err(Error::input("--any-order", "", rule, "leave it out")) } else { Ok(()) }

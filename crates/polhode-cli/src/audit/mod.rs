@@ -165,21 +165,11 @@ impl Audit {
         };
         if self.wheels.is_any() && self.body.is_none() {
             let remedy = "give --moments, --inertia or --body too";
-            return Err(Error::input(
-                "--wheel",
-                "",
-                "a wheel is one of a body that is told by a flag",
-                remedy,
-            ));
+            return Err(Error::input("--wheel", "", "a wheel needs a body", remedy));
         }
         if body.is_none() && self.forces.is_any() {
             let remedy = "give --moments, --inertia or --body too";
-            return Err(Error::input(
-                "--moments",
-                "",
-                "missing: a force acts on a body that is known",
-                remedy,
-            ));
+            return Err(Error::input("--moments", "", "missing: a force needs a body", remedy));
         }
         self.reading.check_order(body.is_some(), !wheels.is_empty())?;
         memory::check_files(&[path.to_path_buf()], 2)?;
@@ -262,9 +252,9 @@ impl Audit {
 fn tolerance(text: &str) -> Result<f64, String> {
     match positive(text)? {
         value if value <= 0.1 => Ok(value),
-        value => {
-            Err(format!("{value:?} is more than 0.1, within which nearly anything is; give a smaller number"))
-        }
+        value => Err(format!(
+            "{value:?} is more than 0.1, with which nearly any record would pass; give a smaller number"
+        )),
     }
 }
 
@@ -294,20 +284,20 @@ fn clock(record: &Trajectory, reading: &Reading) -> Option<String> {
     let known = [(1e-3, "ms"), (1e-6, "us"), (1e-9, "ns")];
     let (_, name) = known.into_iter().find(|(seconds, _)| (unit / seconds - 1.0).abs() < 0.1)?;
     Some(format!(
-        "the attitudes turn as the angular velocities say if the times, which name no unit, are in {name}: --time-unit {name}"
+        "the times have no unit; attitudes and angular velocities agree if they are in {name}: --time-unit {name}"
     ))
 }
 
 /// Turns counts of steps into times, and says how.
 fn timed(record: &mut Trajectory, body: Option<&Body>, place: &str) -> Result<String, Error> {
     let Some(step) = step_length(record, body) else {
-        let rule = "counts steps of a length that it does not tell";
+        let rule = "counts steps of unknown length";
         let remedy = "give the length of a step, s, as --time-unit, or dump with dump_modify time yes";
         return Err(Error::input(place, "", rule, remedy));
     };
     record.times.iter_mut().for_each(|t| *t *= step);
     Ok(format!(
-        "the record counts steps; they are taken to be {} s long, as the body turns; --time-unit gives their length",
+        "the record counts steps; from the turning of the body they are taken to be {} s long; give their length by --time-unit",
         short(step)
     ))
 }

@@ -39,12 +39,12 @@ impl Compare {
         for name in &self.methods {
             let name = name.trim();
             if name == "exact" {
-                let rule = "is what the others are compared with";
+                let rule = "is the reference of the comparison";
                 return Err(Error::input("--methods", name, rule, "leave it out; exact-step takes steps"));
             }
             if name.starts_with("dissipating:") {
                 let rule =
-                    "moves a body with inner friction, and the true motion here is that of a rigid body";
+                    "is for a body with inner friction, and the true motion here is that of a rigid body";
                 let remedy = "leave it out; `polhode propagate --method` takes it";
                 return Err(Error::input("--methods", name, rule, remedy));
             }
@@ -98,7 +98,7 @@ impl Compare {
             let (rule, remedy) = match entries.iter().all(|entry| entry.step.is_some()) {
                 true => (
                     "none of the methods chooses its steps",
-                    format!("leave it out, or take one of {}", adaptive()),
+                    format!("leave it out, or use one of {}", adaptive()),
                 ),
                 false => (
                     "each method that chooses its steps has a tolerance behind its name",
@@ -141,7 +141,7 @@ impl Compare {
     ) -> Result<(), Error> {
         let step = match entry.step {
             Some(step) => {
-                cost::check("--steps", step, span / step, "take larger steps or an earlier end")?;
+                cost::check("--steps", step, span / step, "use larger steps or an earlier end")?;
                 step
             }
             None => {

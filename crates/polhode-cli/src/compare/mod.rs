@@ -141,7 +141,7 @@ impl Compare {
         if known < span {
             let (until, known) = (short(self.until), short(self.start_time + known));
             warn(&format!(
-                "--until: '{until}': two runs in double-double agree up to t = {known} only; attitude errors and flips are of that time"
+                "--until: '{until}': two runs in double-double agree only up to t = {known}; attitude errors and flips are those at that time"
             ));
         }
         let mut table = Table::new("comparison", "Methods on one body.", self.columns(&body));
@@ -183,7 +183,7 @@ impl Compare {
             if let Some(last) = last.filter(|t| *t < end - 1e-9 * span) {
                 let (name, end, last) = (&trajectory.name, short(end), short(last));
                 warn(&format!(
-                    "{name}: its last row until t = {end} s is at t = {last} s: its errors are of that time, and those of the methods of t = {end} s"
+                    "{name}: its last row is at t = {last} s: its errors are those at that time, and those of the methods are at t = {end} s"
                 ));
             }
         }
@@ -193,7 +193,7 @@ impl Compare {
         if let Some((file, picture)) = figure_file {
             if figure.series.is_empty() {
                 return Err(Error::Failed(
-                    "--figure: every attitude is lost, and nothing is left to draw; take smaller steps or an earlier end".into(),
+                    "--figure: every attitude is lost, and nothing is left to draw; use smaller steps or an earlier end".into(),
                 ));
             }
             crate::plot::write(file, picture, &figure.page())?;

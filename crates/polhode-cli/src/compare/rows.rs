@@ -84,16 +84,16 @@ impl Compare {
         set("status", found.ending.by_clock(self.start_time).to_string().into());
         if let Some(angle) = found.elsewhere {
             warn(&format!(
-                "{}: its first attitude is {angle:.2} rad off the true motion: another start, another body or another convention; \
-                 `polhode audit` tells more",
+                "{}: its first attitude differs by {angle:.2} rad from the true motion: another start, another body or another \
+                 convention; `polhode audit` tells more",
                 trajectory.name
             ));
         }
         if let Some(share) = found.contradiction {
             set("status", "rates contradict".into());
             warn(&format!(
-                "{}: its angular velocities are off those of the true motion by {share:.2} of their size (root mean square), and its \
-                 attitudes by {:.1e} rad at most: rates and attitudes contradict each other; `polhode audit` tells more",
+                "{}: its angular velocities differ from the true motion by {share:.2} of their size (root mean square), its \
+                 attitudes by at most {:.1e} rad: rates and attitudes contradict each other; `polhode audit` tells more",
                 trajectory.name, found.largest
             ));
         }
@@ -183,7 +183,7 @@ fn columns(body: &Body) -> Vec<Column> {
         ),
         Column::new("evaluations", "", "right sides, turns, flows, solutions and kicks together")
             .heading("evals"),
-        Column::new("seconds", "s", "processor time, unwatched").hidden(),
+        Column::new("seconds", "s", "processor time without the check of errors").hidden(),
         Column::new("rk4_steps", "", "the same in steps of rk4").heading("rk4 steps").digits(2),
         Column::new(
             "flips",

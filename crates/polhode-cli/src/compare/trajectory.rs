@@ -79,10 +79,7 @@ impl Trajectory {
         let name = visible(&path.display().to_string()).into_owned();
         let refused = |rule: &str, remedy: &str| Err(Error::input(&name, "", rule, remedy));
         if found.counts_steps {
-            return refused(
-                "counts steps of a length that it does not tell",
-                "give the length of a step, s, as --time-unit",
-            );
+            return refused("counts steps of unknown length", "give the length of a step, s, as --time-unit");
         }
         if !found.second_attitude.is_empty() && !table.names_quantities() {
             let rule = format!(
@@ -112,11 +109,11 @@ impl Trajectory {
         let Some((reading, is_of_another_body)) = reading(&columns, claims, body) else {
             return match &columns.attitude {
                 Some(Attitudes::Quaternions(_)) => refused(
-                    "its rows leave open whether the scalar of the quaternion stands first or last",
+                    "its rows do not show whether the scalar of the quaternion is first or last",
                     "state it by --quaternion wxyz or xyzw",
                 ),
                 _ => refused(
-                    "its rows leave the sequence of the Euler angles open, or turn about other axes than roll, pitch and yaw say",
+                    "its rows do not determine the sequence of the Euler angles, or contradict the names roll, pitch and yaw",
                     "write the attitude as a quaternion",
                 ),
             };
@@ -136,7 +133,7 @@ impl Trajectory {
         }
         if is_of_another_body {
             return refused(
-                "its rows are those of a body with other moments, or of these about other axes",
+                "its rows are those of a body with other moments or other axes",
                 "name its body; `polhode audit` tells more",
             );
         }

@@ -28,7 +28,7 @@ pub(super) fn beside(spec: &Spec, reduced: &[Option<Reduced>], rows: &[usize]) -
                 .heading("angle rms"),
             Column::new("first_order", "rad", "the same by the derivative of the motion")
                 .heading("first order"),
-            Column::new("nonlinearity", "", "what the first order leaves out, as a share").digits(2),
+            Column::new("nonlinearity", "", "share that the first order leaves out").digits(2),
         ],
     );
     let mut worst = 0.0_f64;
@@ -42,9 +42,9 @@ pub(super) fn beside(spec: &Spec, reduced: &[Option<Reduced>], rows: &[usize]) -
         table.push(row![t, members, Cell::from(angle), Cell::from(nonlinearity)]);
     }
     let judged = if worst <= TRUSTED {
-        "the covariance to first order tells the same"
+        "the first-order covariance agrees"
     } else {
-        "where the nonlinearity is above 0.1 the covariance to first order is not to be trusted"
+        "where the nonlinearity is above 0.1, do not trust the first-order covariance"
     };
-    Some(format!("{}\nMembers beside the first order: {judged}.\n", table.terminal()))
+    Some(format!("{}\nMembers compared with the first order: {judged}.\n", table.terminal()))
 }

@@ -42,7 +42,7 @@ pub(super) fn finished(out: &Path) -> Result<Vec<Finished>, Error> {
         let record = record(&path, read)?;
         let shard = record.as_ref().and_then(Record::place);
         let Some((record, shard)) = record.zip(shard) else {
-            let rule = format!("is no shard of an ensemble: it has no {MARK} that says so");
+            let rule = format!("is not a shard of an ensemble: it has no {MARK} of one");
             let place = path.display().to_string();
             return Err(Error::input(&out.display().to_string(), &place, &rule, "move it away"));
         };
@@ -119,7 +119,7 @@ pub(super) fn failures_table(failures: &[Failure]) -> Table {
     let columns = vec![
         Column::new("member", "", "its number, from 1"),
         Column::new("t", "s", "first time at which it has no row"),
-        Column::new("reason", "", "what befell it"),
+        Column::new("reason", "", "why"),
     ];
     let mut table = Table::new(FAILURES, "Members that have no rows from some time on.", columns);
     for failure in failures {
@@ -207,7 +207,7 @@ impl Finished {
         };
         let wrong = |name: &str| {
             let path = self.path.join(format!("{name}.csv"));
-            self.wrong(&path, "it has other rows than a shard")
+            self.wrong(&path, "its rows are not those of a shard")
         };
         let cell = |text: &str| -> Result<Option<f64>, Error> {
             if text.is_empty() { Ok(None) } else { text.parse().map(Some).map_err(|_| wrong(ERRORS)) }

@@ -292,12 +292,7 @@ impl Ensemble {
             Err(Error::Input(format!("{}: {rule}; {remedy}", spec.place)))
         };
         if let Some(free) = memory::free().filter(|free| needed > *free) {
-            return refused(
-                "of memory",
-                needed,
-                free,
-                "take fewer members, or share them out with --shard K/N",
-            );
+            return refused("of memory", needed, free, "use fewer members, or split them with --shard K/N");
         }
         let arrays = npy::Array::<4>::size(times, members).saturating_add(if spec.omegas {
             npy::Array::<3>::size(times, members)
@@ -329,8 +324,8 @@ fn warn_of(shares: &Shares, members: u64) {
     if let Some((first, reason)) = unknown.next() {
         let count = 1 + unknown.count();
         warn(&format!(
-            "whether the event happens is not known of {count} of {members} members, the first of them \
-             member {first}: {reason}; see passages.csv"
+            "whether the event happens is not known for {count} of {members} members, the first of them member {first}: \
+             {reason}; see passages.csv"
         ));
     }
 }
@@ -341,7 +336,7 @@ fn said(results: &Results, shares: &Shares, identity: &Identity, out: &Path) -> 
     warn_of(shares, members);
     let draws = shares.draws;
     let redrawn = if draws > members {
-        format!("{} of {draws} draws belong to no body and were drawn again.\n", draws - members)
+        format!("{} of {draws} draws are not physical and were drawn again.\n", draws - members)
     } else {
         String::new()
     };

@@ -118,7 +118,7 @@ pub(super) fn sentence(passages: &[Passage], event: &str, last: f64) -> String {
     }
     let unknown = passages.iter().filter(|one| one.unknown().is_some()).count();
     if unknown > 0 {
-        said += &format!("; not known of {unknown}");
+        said += &format!("; not known for {unknown}");
     }
     said + ".\n"
 }
@@ -138,7 +138,7 @@ mod tests {
         let known = "flip: happens to 1 of 2 members by t = 9 s, to 5 % by 2.000000 s, to 50 % by 2.000000 s";
         assert_eq!(sentence(&passages, "flip", 9.0), format!("{known}.\n"));
         passages.push(one("too many looks", None));
-        let unknown = "flip: happens to 1 of 3 members by t = 9 s, to 5 % by 2.000000 s; not known of 1";
+        let unknown = "flip: happens to 1 of 3 members by t = 9 s, to 5 % by 2.000000 s; not known for 1";
         assert_eq!(sentence(&passages, "flip", 9.0), format!("{unknown}.\n"));
         assert_eq!(passages[2].unknown(), Some("too many looks"));
     }

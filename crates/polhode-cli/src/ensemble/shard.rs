@@ -50,8 +50,9 @@ impl Shard {
         let number = |name: &'static str| -> Result<Option<u64>, Error> {
             let Some(text) = variable(name) else { return Ok(None) };
             let parsed = text.trim().parse().map(Some);
-            parsed
-                .map_err(|_| Error::input(name, &text, "is no whole number", "unset it, or give --shard K/N"))
+            parsed.map_err(|_| {
+                Error::input(name, &text, "is not a whole number", "unset it, or give --shard K/N")
+            })
         };
         let needed = |name: &'static str, beside: &str| {
             let missing = || Error::input(name, "", &format!("missing beside {beside}"), "give --shard K/N");
@@ -74,7 +75,7 @@ impl Shard {
             if let Some(place) = number(rank)? {
                 let count = needed(size, rank)?;
                 if place >= count {
-                    let rule = format!("ranks count from 0 to {size} - 1, and that is {count}");
+                    let rule = format!("ranks count from 0 to {size} - 1, and {size} is {count}");
                     return Err(Error::input(rank, &place.to_string(), &rule, "give --shard K/N"));
                 }
                 found.push((Self { number: place + 1, count }, rank));
@@ -107,7 +108,7 @@ impl Shard {
             [(one, name), (other, beside), ..] => Err(Error::input(
                 name,
                 &one.to_string(),
-                &format!("names another share than {beside}, which says {other}"),
+                &format!("contradicts {beside}, which is {other}"),
                 "give --shard K/N",
             )),
         }
@@ -130,7 +131,7 @@ impl FromStr for Shard {
             Some((number, count)) => {
                 Err(format!("{number} is not among 1 to {count}; shards count from 1, as in 1/16 to 16/16"))
             }
-            None => Err("needed is K/N, as in 3/16".into()),
+            None => Err("expected K/N, as in 3/16".into()),
         }
     }
 }
@@ -214,14 +215,14 @@ mod tests {
             assert!(message.contains(says), "{message}");
         };
         refused(&task("7", "2", ["3", "7"]), "2 tasks from 3 to 7 have gaps");
-        refused(&task("x", "2", ["3", "7"]), "SLURM_ARRAY_TASK_ID: 'x': is no whole number");
+        refused(&task("x", "2", ["3", "7"]), "SLURM_ARRAY_TASK_ID: 'x': is not a whole number");
         refused(
             &[("SLURM_ARRAY_TASK_ID", "1")],
             "SLURM_ARRAY_TASK_COUNT: missing beside SLURM_ARRAY_TASK_ID",
         );
         refused(&[("PMI_RANK", "4"), ("PMI_SIZE", "4")], "ranks count from 0");
         let both = [&task("2", "3", ["1", "3"])[..], &[("PMI_RANK", "0"), ("PMI_SIZE", "4")]].concat();
-        refused(&both, "SLURM_ARRAY_TASK_ID: '2/3': names another share than PMI_RANK, which says 1/4");
+        refused(&both, "SLURM_ARRAY_TASK_ID: '2/3': contradicts PMI_RANK, which is 1/4");
     }
 
     /// Ranks of which no variable tells the share would all run all members, or the same share of an array.

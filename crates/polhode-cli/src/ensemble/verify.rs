@@ -25,7 +25,7 @@ pub(super) const NORM: f64 = 1e-8;
 /// finite, and members that do not add up.
 pub(super) fn verified(shard: &Finished) -> Result<Shares, Error> {
     if !shard.record.is_as_written() {
-        return Err(shard.wrong(&shard.mark(), "it is not as its run wrote it"));
+        return Err(shard.wrong(&shard.mark(), "it has changed since its run wrote it"));
     }
     for name in shard.tables().map(|name| format!("{name}.csv")) {
         let path = shard.path.join(&name);
@@ -70,13 +70,13 @@ pub(super) fn unchanged(folder: &Path, record: &Record) -> Result<(), Error> {
         Err(Error::Input(format!("{}: {rule}; {remedy}", path.display())))
     };
     if !record.is_as_written() {
-        return refused(MARK, "it is not as its run wrote it");
+        return refused(MARK, "it has changed since its run wrote it");
     }
     for (name, written) in record.sha256.iter().filter(|(name, _)| *name != MARK) {
         match inputs::open_own(&folder.join(name)).and_then(Checksum::of) {
             Ok(found) if found == *written => {}
             Ok(found) => {
-                let rule = format!("it is not as its run wrote it: SHA-256 {found}, not {written}");
+                let rule = format!("it has changed since its run wrote it: SHA-256 {found}, not {written}");
                 return refused(name, &rule);
             }
             Err(error) => return refused(name, &error.to_string()),
@@ -125,9 +125,8 @@ fn same(shard: &Finished, name: &str, found: &str) -> Result<(), Error> {
     let path = shard.path.join(name);
     match shard.record.sha256.get(name) {
         Some(written) if written == found => Ok(()),
-        Some(written) => {
-            Err(shard.wrong(&path, &format!("it is not as its run wrote it: SHA-256 {found}, not {written}")))
-        }
+        Some(written) => Err(shard
+            .wrong(&path, &format!("it has changed since its run wrote it: SHA-256 {found}, not {written}"))),
         None => Err(shard.wrong(&path, "run.toml beside it has no SHA-256 of it")),
     }
 }
@@ -152,7 +151,7 @@ fn missing(shard: &Finished, shares: &Shares) -> Result<HashMap<u64, u64>, Error
         }
         let Some(time) = shares.times.iter().position(|t| *t == failure.t) else {
             return wrong(format!(
-                "member {} has failed at {}, which is no time of a row",
+                "member {} has failed at {}, which is not the time of a row",
                 failure.member, failure.t
             ));
         };

@@ -51,7 +51,7 @@ fn typed(value: impl ValueEnum) -> String {
 }
 
 fn angle(text: &str) -> Result<AngleUnit, String> {
-    AngleUnit::named(text).ok_or_else(|| format!("'{text}' is no unit of angles here; write rad or deg"))
+    AngleUnit::named(text).ok_or_else(|| format!("unknown unit of angles '{text}'; write rad or deg"))
 }
 
 fn sequence(text: &str) -> Result<(EulerSequence, Turns), String> {
@@ -73,7 +73,7 @@ pub(crate) fn of_order(order: Option<Order>) -> Option<(&'static str, String)> {
 /// Refuses a flag and its value that say how `what` is written, where nothing that was read has one.
 pub(crate) fn check_used(flag: Option<(&str, String)>, is_used: bool, what: &str) -> Result<(), Error> {
     let Some((flag, value)) = flag.filter(|_| !is_used) else { return Ok(()) };
-    let rule = format!("says how {what} is written, and none is read");
+    let rule = format!("is for {what}, and none is read");
     Err(Error::input(flag, &value, &rule, "leave it out, or name the columns by --columns"))
 }
 
@@ -97,14 +97,14 @@ pub(crate) fn check_matrices(matrices: &[[f64; 9]], times: &[f64], name: &str) -
         let determinant = m.determinant();
         let rule = if determinant < 0.0 {
             format!(
-                "the matrix at {t} s has the determinant {determinant:.4}: it mirrors, one of its frames is left-handed"
+                "the matrix at {t} s has the determinant {determinant:.4}: one of its frames is left-handed"
             )
         } else {
             let off = ((m.transpose() * m) / (m.norm_squared() / 3.0) - Matrix3::identity()).amax();
             if off <= ORTHOGONAL {
                 continue;
             }
-            format!("the matrix at {t} s is no rotation: M^T M differs from a multiple of 1 by {off:.2e}")
+            format!("the matrix at {t} s is not a rotation: M^T M differs from a multiple of 1 by {off:.2e}")
         };
         return Err(Error::input(name, "", &rule, "write rotation matrices with the determinant 1"));
     }
@@ -162,7 +162,7 @@ impl AttitudeArguments {
         let (Some(_), Some((sequence, _))) = (found.claims.angle_axes, self.euler) else { return Ok(()) };
         let axes = sequence.axes();
         if axes[0] == axes[2] {
-            let rule = "turns about one axis twice, and roll, pitch and yaw are angles about x, y and z";
+            let rule = "turns about one axis twice, while roll, pitch and yaw are angles about x, y and z";
             return Err(Error::input(
                 "--euler",
                 &sequence.to_string(),

@@ -46,7 +46,7 @@ pub(crate) fn event(text: &str) -> Result<TypedEvent, String> {
                 let target = turn(quaternion(components)?);
                 Kind::Nearest(target.ok_or("the quaternion is zero, which is no attitude")?)
             }
-            _ => return Err(format!("it is no event that is known; {FORMS}")),
+            _ => return Err(format!("unknown event; {FORMS}")),
         },
     };
     Ok(TypedEvent { text: text.into(), kind })
@@ -65,7 +65,7 @@ fn inside(text: &str) -> Option<(&str, &str)> {
 
 /// `(body z, space x) < 10deg`
 fn cone(text: &str) -> Result<Kind, String> {
-    let form = || "an angle is that between two axes: write angle(body z, space x) < 10deg".to_owned();
+    let form = || "an angle needs two axes: write angle(body z, space x) < 10deg".to_owned();
     let (axes, rest) = inside(text).ok_or_else(form)?;
     let found = [axes.find("body"), axes.find("space")];
     let [Some(of_body), Some(of_space)] = found else { return Err(form()) };
@@ -92,7 +92,7 @@ fn axis(text: &str) -> Result<[f64; 3], String> {
         None => (1.0, text),
     };
     let place = ["x", "y", "z"].iter().position(|known| *known == name);
-    let place = place.ok_or_else(|| format!("'{text}' is no axis; write x, -z or (1,0,2)"))?;
+    let place = place.ok_or_else(|| format!("'{text}' is not an axis; write x, -z or (1,0,2)"))?;
     let mut axis = [0.0; 3];
     axis[place] = sign;
     Ok(axis)
@@ -117,7 +117,7 @@ impl TypedEvent {
     pub(crate) fn of(&self, body: &Body) -> Result<Event, Error> {
         let [least, middle, most] = body.inertia().principal_moments();
         if self.kind == Kind::Flip && (least == middle || middle == most) {
-            let rule = "two moments are equal, and there is no middle axis to turn over about";
+            let rule = "two moments are equal, so that there is no middle axis and no flip";
             let remedy = "name an angle, as angle(body z, space x) < 10deg";
             return Err(Error::input("--event", &self.text, rule, remedy));
         }
@@ -176,20 +176,20 @@ mod tests {
     #[test]
     fn what_is_none_is_refused_by_its_part() {
         for (text, part) in [
-            ("", "no event that is known"),
-            ("flips", "no event"),
-            ("nearest(1,0,0,0) now", "no event"),
+            ("", "unknown event"),
+            ("flips", "unknown event"),
+            ("nearest(1,0,0,0) now", "unknown event"),
             ("nearest(1,0,0)", "4"),
             ("nearest(0,0,0,0)", "has no direction"),
-            ("angle(body z) < 1deg", "between two axes"),
-            ("angle(body z, body x) < 1deg", "between two axes"),
-            ("angle(body w, space x) < 1deg", "'w' is no axis"),
+            ("angle(body z) < 1deg", "needs two axes"),
+            ("angle(body z, body x) < 1deg", "needs two axes"),
+            ("angle(body w, space x) < 1deg", "'w' is not an axis"),
             ("angle(body z, space x) < 10", "has no unit"),
-            ("angle(body z, space x) < 10rev", "no unit of angles"),
+            ("angle(body z, space x) < 10rev", "unknown unit of angles"),
             ("angle(body z, space x) 10deg", "a limit is missing"),
             ("angle(body z, space x) > 190deg", "between 0 and pi rad"),
             ("rate > 5", "has no unit"),
-            ("rate > 5deg", "no unit of rates"),
+            ("rate > 5deg", "unknown unit of rates"),
             ("rate > NaN rad/s", "a number is missing"),
             ("rate", "a limit is missing"),
         ] {

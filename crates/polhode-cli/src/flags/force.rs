@@ -110,7 +110,7 @@ pub(crate) fn table(file: &Path, gm: f64) -> Result<Orbit, Error> {
         tell(
             "note",
             &format!(
-                "{name}: from {first:?} s to {last:?} s; places between rows are off by some {error:.0e} of the distance, by comparing polynomials"
+                "{name}: from {first:?} s to {last:?} s; positions between rows have errors of some {error:.0e} of the distance, from two interpolations"
             ),
         );
     }

@@ -59,7 +59,7 @@ fn window(text: &str) -> Result<Window, String> {
 fn share(text: &str) -> Result<f64, String> {
     match number(text)? {
         share if (0.0..1.0).contains(&share) => Ok(share),
-        share => Err(format!("{share:?} is no fraction of the rows; give a number from 0 to below 1")),
+        share => Err(format!("{share:?} is not a fraction of the rows; give a number from 0 to below 1")),
     }
 }
 
@@ -205,8 +205,8 @@ pub(crate) fn of_a_row(error: Error) -> Error {
 pub(crate) fn tell_shared(file: &str, (shared, samples): (usize, usize)) {
     if shared > 0 {
         warn(&format!(
-            "{file}: {shared} of its {samples} samples are those of a file before it; readings that count twice make the standard \
-             deviations too small: leave them out of one (--window)"
+            "{file}: {shared} of its {samples} samples are also in a file before it, and readings that count twice make the \
+             standard deviations too small: leave them out of one (--window)"
         ));
     }
 }

@@ -57,7 +57,7 @@ pub(crate) struct StartArguments {
 }
 
 pub(crate) fn frame(text: &str) -> Result<CelestialFrame, String> {
-    CelestialFrame::named(text).ok_or_else(|| format!("'{text}' is no frame here; write ecliptic or icrf"))
+    CelestialFrame::named(text).ok_or_else(|| format!("unknown frame '{text}'; write ecliptic or icrf"))
 }
 
 /// What a unit is in rad or rad/s.
@@ -75,7 +75,7 @@ fn angle(name: &str) -> Option<f64> {
 
 pub(crate) fn angle_unit(text: &str) -> Result<Factor, String> {
     let known = angle(text).filter(|_| text != "rev").map(Factor);
-    known.ok_or_else(|| format!("'{text}' is no unit of angles here; write rad or deg"))
+    known.ok_or_else(|| format!("unknown unit of angles '{text}'; write rad or deg"))
 }
 
 /// A number with the unit behind it, as in `example`.
@@ -102,7 +102,7 @@ pub(crate) fn rate_unit(text: &str) -> Result<Factor, String> {
     }
     let parts = text.split_once('/').and_then(|(over, under)| Some((angle(over)?, seconds_in(under)?)));
     let unit = parts.map(|(angle, seconds)| Factor(angle / seconds));
-    unit.ok_or_else(|| format!("'{text}' is no unit of rates here; write rad/s, deg/s, deg/d, rev/h or rpm"))
+    unit.ok_or_else(|| format!("unknown unit of rates '{text}'; write rad/s, deg/s, deg/d, rev/h or rpm"))
 }
 
 pub(crate) fn sequence(text: &str) -> Result<EulerSequence, String> {
@@ -127,13 +127,11 @@ fn rotation(text: &str) -> Result<TypedRotation, String> {
     let deviation = (matrix.transpose() * matrix - Matrix3::identity()).amax();
     if deviation.is_nan() || deviation > MOST_DEVIATION {
         return Err(format!(
-            "its columns are not orthonormal: R^T R differs from 1 by {deviation:.1e}, and at most {MOST_DEVIATION:e} is taken for rounding"
+            "its columns are not orthonormal: R^T R differs from 1 by {deviation:.1e}, more than {MOST_DEVIATION:e} for rounding"
         ));
     }
     if matrix.determinant() < 0.0 {
-        return Err(
-            "its determinant is -1: a reflection, which no body can do; change the sign of an axis".into()
-        );
+        return Err("its determinant is -1, which is a reflection; change the sign of an axis".into());
     }
     // the factor of the polar decomposition, by Newton and Schulz; squares of the deviation
     let nearest = (0..5).fold(matrix, |r, _| r * (Matrix3::identity() * 1.5 - r.transpose() * r * 0.5));
@@ -175,7 +173,7 @@ impl StartArguments {
         {
             let angle = short(*angle);
             warn(&format!(
-                "the angle {angle} is taken as rad, beyond a whole turn; --angle-unit deg says degrees"
+                "the angle {angle} is taken as rad and exceeds a whole turn; for degrees give --angle-unit deg"
             ));
         }
         Ok(())

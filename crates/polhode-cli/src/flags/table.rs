@@ -64,15 +64,14 @@ impl TableArguments {
 
 fn time_unit(text: &str) -> Result<TimeUnit, String> {
     let number = || positive(text).ok().map(TimeUnit::Multiple);
-    TimeUnit::named(text).or_else(number).ok_or_else(|| {
-        format!("'{text}' is no unit of time here; known: s, ms, us, ns, or a number of seconds")
-    })
+    TimeUnit::named(text)
+        .or_else(number)
+        .ok_or_else(|| format!("unknown unit of time '{text}'; known: s, ms, us, ns, or a number of seconds"))
 }
 
 /// A unit of angular velocity.
 pub(crate) fn rate_unit(text: &str) -> Result<RateUnit, String> {
-    RateUnit::named(text)
-        .ok_or_else(|| format!("'{text}' is no unit of rates here; known: rad/s, deg/s, rpm"))
+    RateUnit::named(text).ok_or_else(|| format!("unknown unit of rates '{text}'; known: rad/s, deg/s, rpm"))
 }
 
 /// Place of the scalar in a quaternion.

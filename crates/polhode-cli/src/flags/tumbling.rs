@@ -56,7 +56,7 @@ pub(crate) fn periods(text: &str) -> Result<Periods, String> {
                 let known = NAMES.iter().position(|known| known.eq_ignore_ascii_case(name.trim()));
                 (
                     known.ok_or_else(|| {
-                        format!("'{}' is no period; write P_phi, P_psi or P_1", name.trim())
+                        format!("unknown period '{}'; write P_phi, P_psi or P_1", name.trim())
                     })?,
                     period,
                 )
@@ -75,7 +75,7 @@ pub(crate) fn periods(text: &str) -> Result<Periods, String> {
         [Some(precession), Some(rotation), _] => Ok(Periods::Both([precession, rotation])),
         [Some(precession), _, Some(combined)] => Ok(Periods::PrecessionAndCombined([precession, combined])),
         [_, Some(rotation), Some(combined)] => Ok(Periods::CombinedAndRotation([combined, rotation])),
-        _ => Err("needed are two of P_phi, P_psi and P_1".into()),
+        _ => Err("give two of P_phi, P_psi and P_1".into()),
     }
 }
 

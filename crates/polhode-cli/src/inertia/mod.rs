@@ -321,7 +321,7 @@ impl Inertia {
             (None, None) => Err(Error::input(
                 "--mass",
                 "",
-                &format!("missing: {} needs an amount of matter", self.shape),
+                &format!("missing: {} needs a mass or a density", self.shape),
                 "give --mass M (kg) or --density D (kg/m^3)",
             )),
         }

@@ -113,21 +113,21 @@ type Replacement = (Vec<(Range<usize>, String)>, Matrix3<f64>, String);
 
 fn replacement(link: &Examined, path: &str) -> Result<Replacement, String> {
     let found = link.diagnosis.as_ref().ok_or("no tensor is stated that could be corrected")?;
-    let writing = link.given.writing.as_ref().ok_or("the tensor does not stand in the file")?;
+    let writing = link.given.writing.as_ref().ok_or("the tensor is not written in the file")?;
     if *writing.file != *Path::new(path) {
         return Err(format!(
-            "it stands in '{}'; repair that file",
+            "it is written in '{}'; repair that file",
             visible(&writing.file.display().to_string())
         ));
     }
     let candidates = candidates(found);
     if candidates.is_empty() {
-        return Err("nothing tells what the tensor should be".into());
+        return Err("no corrected tensor is known".into());
     }
     candidates
         .into_iter()
         .find_map(|(tensor, why)| Some((written(&tensor, writing, link.given.diagonal)?, tensor, why)))
-        .ok_or_else(|| "a product that the file leaves out would be needed".into())
+        .ok_or_else(|| "the correction needs a product that the file leaves out".into())
 }
 
 /// The tensor without its likely mistake, where one is likelier than all others, then the nearest valid one.

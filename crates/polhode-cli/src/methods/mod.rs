@@ -79,7 +79,7 @@ pub(crate) fn unknown(flag: &str, error: UnknownMethod) -> Error {
             Error::input(flag, &name, "has no loss", "write it behind the name, as in dissipating:1e-3")
         }
         UnknownMethod::Name { name } if name.starts_with("dissipating:") => {
-            let rule = "moves a body with inner friction, and here the body is rigid";
+            let rule = "is for a body with inner friction, and here the body is rigid";
             Error::input(flag, &name, rule, "`polhode propagate --method` takes it")
         }
         UnknownMethod::Name { name } => {
@@ -89,7 +89,7 @@ pub(crate) fn unknown(flag: &str, error: UnknownMethod) -> Error {
             Error::unknown_name(flag, "method", &name, known.iter().map(String::as_str))
         }
         UnknownMethod::Argument { name, rule } => {
-            Error::input(flag, &name, "has an argument that it cannot take", &format!("allowed: {rule}"))
+            Error::input(flag, &name, "cannot take this argument", &format!("allowed: {rule}"))
         }
         error => Error::Input(format!("{flag}: {error}")),
     }

@@ -259,7 +259,7 @@ impl Looks {
             cost::check_turn("--until", course.until, turn)?;
             (Clock { step: step.min(1.0 / speed), ..clock }, libm::ceil(turn) as u64)
         } else {
-            cost::check(course.flags.step, step, steps as f64, "take a larger step or an earlier end")?;
+            cost::check(course.flags.step, step, steps as f64, "use a larger step or an earlier end")?;
             (clock, steps)
         };
         cost::announce(method.as_ref(), &self.body, start.to_f64(), trial.0, trial.1);
@@ -350,7 +350,7 @@ fn whole_steps(course: &Course, clock: Clock) -> Result<u64, Error> {
 
 fn without_tolerance(course: &Course, tolerance: f64) -> Error {
     let rule = format!("--method {} takes no --tolerance", course.method);
-    let remedy = format!("leave it out, or take one of {}", adaptive());
+    let remedy = format!("leave it out, or use one of {}", adaptive());
     Error::input("--tolerance", &format!("{tolerance:e}"), &rule, &remedy)
 }
 

@@ -154,7 +154,7 @@ impl Picture {
         let rule = if ending == "html" {
             "only poinsot is a page that moves"
         } else {
-            "its ending names no format of pictures"
+            "its ending is not that of a picture format"
         };
         Err(Error::input(flag, &path.display().to_string(), rule, &remedy))
     }
@@ -202,7 +202,7 @@ impl Plot {
         }
         if self.kind == Kind::Poinsot && self.method.starts_with("dissipating:") {
             return Err(Error::Input(
-                "poinsot: the ellipsoid is that of a constant energy, and inner friction takes it; plot polhode or trace"
+                "poinsot: the ellipsoid needs a constant energy, and inner friction changes it; plot polhode or trace"
                     .into(),
             ));
         }
@@ -218,7 +218,7 @@ impl Plot {
             );
             if picture == Picture::Html {
                 return Err(Error::Input(format!(
-                    "{words}, too far for a motion to be seen; give an earlier end"
+                    "{words}, too far to show the motion; give an earlier end"
                 )));
             }
             warn(&format!(

@@ -32,7 +32,7 @@ impl Construction {
     pub(crate) fn of(looks: &Looks) -> Result<Self, Error> {
         if looks.body.problem() != polhode::body::Problem::Free {
             return Err(Error::Input(
-                "poinsot: the construction is one of free bodies, and a torque acts on this one; leave the torque out, or plot trace".into(),
+                "poinsot: the construction is for free bodies, and a torque acts on this one; leave the torque out, or plot trace".into(),
             ));
         }
         let (Some(state), Some(omega)) = (looks.states.first(), looks.omegas.first()) else {

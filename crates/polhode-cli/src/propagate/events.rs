@@ -43,7 +43,7 @@ impl Propagate {
         self.write_events(body, &columns, &found, Dd::from(origin))?;
         self.tell_of_events(&found);
         if found.found.is_empty() && ended.is_ok() {
-            tell("note", &format!("nothing of it happens from {from} s to {to} s"));
+            tell("note", &format!("none of the events happens from {from} s to {to} s"));
         }
         ended
     }
@@ -55,7 +55,7 @@ impl Propagate {
             Some(every) => Err(Error::input(
                 "--every",
                 &format!("{every:?}"),
-                "is no time between looks",
+                "the time between looks must be positive",
                 "give a positive one",
             )),
             None => Ok(spacing(body.omega_of(start).norm(), whole)),
@@ -73,7 +73,7 @@ impl Propagate {
         let method = self.stepping_method()?;
         let h = self.step_or(method.tolerance().map(|_| spacing))?;
         let steps = (to - from) / h;
-        cost::check("--step", h, steps, "take a larger step or an earlier time")?;
+        cost::check("--step", h, steps, "use a larger step or an earlier time")?;
         if method.tolerance().is_none() {
             cost::warn_coarse("--step", h, body.omega_of(&start).norm());
         }
@@ -124,7 +124,7 @@ impl Propagate {
     /// What the rows do not say.
     fn tell_of_events(&self, found: &Events) {
         for one in found.found.iter().filter(|one| one.crossing == Crossing::AtStart) {
-            tell("note", &format!("{}: is the case at the start already", self.events[one.event].text()));
+            tell("note", &format!("{}: already true at the start", self.events[one.event].text()));
         }
         for &event in &found.may_miss {
             tell(

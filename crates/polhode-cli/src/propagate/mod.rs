@@ -324,7 +324,7 @@ impl Propagate {
         }
         *before = t;
         let steps = (t - clock.start) / clock.step;
-        cost::check("--step", clock.step, steps, "take a larger step or an earlier time")?;
+        cost::check("--step", clock.step, steps, "use a larger step or an earlier time")?;
         if let Some(speed) = speed {
             cost::check_turn(self.times.flag(), t, speed * (t - clock.start))?;
         }
@@ -338,7 +338,7 @@ impl Propagate {
 
     fn without_tolerance(&self, tolerance: f64) -> Error {
         let rule = format!("--method {} does not choose its steps", self.method);
-        let remedy = format!("leave it out, or take one of {}", adaptive());
+        let remedy = format!("leave it out, or use one of {}", adaptive());
         Error::input("--tolerance", &format!("{tolerance:e}"), &rule, &remedy)
     }
 

@@ -46,7 +46,9 @@ impl Propagate {
         let times = regular(first, last, every).map_err(Error::Input)?;
 
         let mut all = columns.columns();
-        all.push(Column::new("slerp_error", "rad", "angle by which the attitude of slerp is off").digits(2));
+        all.push(
+            Column::new("slerp_error", "rad", "angle between this attitude and that of slerp").digits(2),
+        );
         let table = Table::new("through", "Exact motion between attitudes.", all);
         let mut rows = RowWriter::new(table, self.format, self.out.as_deref(), Some(times.len()))?;
         let (mut worst, mut fastest) = (0.0_f64, 0.0_f64);
@@ -84,7 +86,7 @@ impl Propagate {
         if !between.pieces().iter().all(|piece| piece.complete) {
             tell(
                 "note",
-                "between some attitudes the search for motions may have missed some; --turns sets how far it looks",
+                "between some attitudes the search may have missed motions; --turns sets how far it looks",
             );
         }
         if is_broken {
@@ -113,7 +115,7 @@ fn read(file: &Path, has_epoch: bool) -> Result<Vec<(f64, UnitQuaternion<f64>)>,
     let refused = |rule: &str, remedy: &str| Err(Error::input("--through", &name, rule, remedy));
     let found = trajectory::read(file, &ReadOptions::default())?;
     if found.counts_steps {
-        return refused("counts steps of a length that it does not tell", "write the times in s");
+        return refused("counts steps of unknown length", "write the times in s");
     }
     if !found.second_attitude.is_empty() {
         let second = found.second_attitude.join(", ");
@@ -135,7 +137,10 @@ fn read(file: &Path, has_epoch: bool) -> Result<Vec<(f64, UnitQuaternion<f64>)>,
         return refused("has no quaternions", "write the attitudes as q_w, q_x, q_y, q_z, body to space");
     };
     if found.claims.quaternion != Some(QuaternionOrder::ScalarFirst) {
-        return refused("leaves open where the scalar stands", "name the columns q_w, q_x, q_y, q_z");
+        return refused(
+            "does not show whether the scalar is first or last",
+            "name the columns q_w, q_x, q_y, q_z",
+        );
     }
     let is_inverse = found.claims.attitude == Some(Direction::SpaceToBody);
     let unit = |[w, x, y, z]: [f64; 4]| {

@@ -60,7 +60,7 @@ impl Against {
             _ => (text, None),
         };
         if name == "exact" {
-            let rule = "is what the others are compared with";
+            let rule = "is the reference of the comparison";
             return Err(Error::input("--against", text, rule, "name a method and its step, as rk4:0.1"));
         }
         match method(name) {
@@ -142,7 +142,7 @@ impl Show {
                     "--against",
                     typed,
                     &rule,
-                    "take a smaller step, or a later --until",
+                    "use a smaller step, or a later --until",
                 ));
             }
             until = course.start_time + steps * step;
@@ -199,7 +199,7 @@ impl Show {
         let apart = first.attitude(t).map_or(0.0, |p| rotation_angle::<f64>(p.into(), q.into()));
         if apart > LOST {
             let rule = format!(
-                "its first attitude is {apart:.2} rad off this body's at that time: another body or another start"
+                "its first attitude differs by {apart:.2} rad from this body's at that time: another body or another start"
             );
             return refused(&short(t), &rule, "name the body of the file and its start");
         }

@@ -163,7 +163,7 @@ impl Show {
             return Ok(looks);
         }
         let rule = format!(
-            "the body then turns by {:.2} rad from one of {} attitudes to the next, and a page holds no more of them",
+            "the body then turns by {:.2} rad from one of {} attitudes to the next, and a page has at most so many",
             looks.turn(),
             looks.times.len()
         );
@@ -173,7 +173,7 @@ impl Show {
             "--until",
             &short(course.until),
             &rule,
-            &format!("take an earlier end, as {earlier}"),
+            &format!("give an earlier end, as {earlier}"),
         ))
     }
 

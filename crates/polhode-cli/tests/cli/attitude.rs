@@ -43,7 +43,7 @@ fn columns_are_those_of_the_contract_and_errors_those_of_the_budget() {
     assert!(last(&error) < 1e-8 && last(&error) > 0.0, "{}", last(&error));
     assert!((0.3..3.0).contains(&(last(&truncation) / last(&error))));
     assert!(answer.err.contains("; at t = 20 s: truncation"), "{}", answer.err);
-    assert!(answer.err.contains("the trapezoid with coning would be off by"), "{}", answer.err);
+    assert!(answer.err.contains("the trapezoid with coning would differ by"), "{}", answer.err);
     assert!(answer.err.contains("401 rows compared, read as body to space"), "{}", answer.err);
     // the rules that others run, and orders by hand
     let of = |flags: &str| {
@@ -89,7 +89,7 @@ fn a_noisy_record_has_its_random_walk() {
     );
     let other = run(&format!("attitude {record} --kind rate --body racket"));
     assert_eq!((other.code, other.out.as_str()), (1, ""));
-    assert!(other.err.contains("the body contradicts the record"), "{}", other.err);
+    assert!(other.err.contains("the record contradicts the body"), "{}", other.err);
 }
 
 /// Four readings of whatever noise lie on a cubic.
@@ -103,7 +103,7 @@ fn a_record_that_is_too_short_for_its_budget_says_what_is_missing() {
         assert_eq!(answer.code, 0, "{answer:?}");
         answer.err
     };
-    let noise = "warning: fewer than 5 samples: their noise cannot be found";
+    let noise = "warning: fewer than 5 samples, too few to find their noise";
     let truncation = "warning: one polynomial goes through all 4 samples";
     let four = told(4, "--order 4 --samples 4");
     assert!(four.contains(noise) && four.contains(truncation), "{four}");
@@ -138,7 +138,7 @@ fn the_kind_is_told_by_the_unit_or_asked_for() {
     let rates = rows("t (s),wx (rad/s),wy (rad/s),wz (rad/s)");
     let told = answer(&rates, "");
     assert!((angle(&told) - 4.9 * size).abs() < 1e-12);
-    assert!(told.err.contains("taken for rates"), "{}", told.err);
+    assert!(told.err.contains("taken as rates"), "{}", told.err);
     let angles = rows("t (s),wx (rad),wy (rad),wz (rad)");
     assert!((angle(&answer(&angles, "")) - 49.0 * size).abs() < 1e-12);
     refused_with(&["attitude", &angles, "--kind", "rate"], &["--kind", "unit", "angle", "increment"]);
@@ -264,7 +264,10 @@ fn records_that_tell_no_attitude_are_refused_by_name() {
     let later = scratch.file("later.csv", "t,q_w,q_x,q_y,q_z\n1,1,0,0,0\n2,1,0,0,0\n");
     refused(&format!("--against {later}"), &["--against", "no attitude at the first time", "--start"]);
     let open = scratch.file("open.csv", "t,q0,q1,q2,q3\n0,1,0,0,0\n1,1,0,0,0\n");
-    refused(&format!("--against {open}"), &["--against", "where the scalar stands", "q_w, q_x, q_y, q_z"]);
+    refused(
+        &format!("--against {open}"),
+        &["--against", "whether the scalar is first or last", "q_w, q_x, q_y, q_z"],
+    );
     // a second time that jumps
     let clock = |k: i32| 0.1 * f64::from(k) + if k > 20 { 0.4 } else { 0.0 };
     let rows: String = (0..40).map(|k| format!("{},{:.2},1,0,0,0\n", 100 * k, clock(k))).collect();
@@ -272,9 +275,9 @@ fn records_that_tell_no_attitude_are_refused_by_name() {
     let answer = run(&with(&format!("--against {clocks}")));
     // of a body that turned the attitude is not the identity
     assert_eq!(answer.code, 1, "{}", answer.err);
-    assert!(answer.err.contains("clocks.csv: not read: t; column 't' is a time too"), "{}", answer.err);
+    assert!(answer.err.contains("clocks.csv: not read: t; column 't' is also a time"), "{}", answer.err);
     let angles = scratch.file("angles.csv", "t,phi,theta,psi\n0,0,0,0\n1,0,0,1\n");
-    refused(&format!("--against {angles}"), &["--against", "do not say their sequence"]);
+    refused(&format!("--against {angles}"), &["--against", "the sequence of its Euler angles is not known"]);
 }
 
 #[test]
@@ -297,13 +300,13 @@ fn the_summary_says_whether_the_budget_holds() {
     for flags in ["", "--noise 0", "--rule hold"] {
         let answer = run(&format!("{line} {flags}"));
         assert_eq!(answer.code, 0, "{}", answer.err);
-        let says = "401 inside their 95 %: the budget holds";
-        assert!(answer.err.contains(says) && !answer.err.contains("beyond"), "{flags}: {}", answer.err);
+        let says = "401 within their 95 % bound: the 95 % bounds hold";
+        assert!(answer.err.contains(says) && !answer.err.contains("exceed"), "{flags}: {}", answer.err);
     }
     let degrees = run(&format!("{line} --rate-unit deg/s"));
     assert_eq!((degrees.code, degrees.out.lines().count()), (1, 402), "{}", degrees.err);
     for part in
-        ["the budget is contradicted", "contradicts the attitudes: ", " of 400 errors are beyond twice"]
+        ["the 95 % bounds are contradicted", "contradicts the attitudes: ", " of 400 errors exceed twice"]
     {
         assert!(degrees.err.contains(part), "{part}: {}", degrees.err);
     }
@@ -319,7 +322,7 @@ fn the_summary_says_whether_the_budget_holds() {
     let rounded = scratch.file("rounded.csv", rounded.collect::<String>());
     let answer = run(&format!("attitude {record} --kind rate --against {rounded}"));
     assert_eq!(answer.code, 0, "{}", answer.err);
-    assert!(answer.err.contains("the budget is too small"), "{}", answer.err);
+    assert!(answer.err.contains("the 95 % bounds are too small"), "{}", answer.err);
 }
 
 /// Most of the errors say nothing of one that is a turn by half, nor does the start that is that of the reference say anything.
@@ -333,8 +336,8 @@ fn one_wild_row_and_a_start_alone_are_no_agreement() {
     let answer = run(&format!("attitude {record} --kind rate --against {wild}"));
     assert_eq!((answer.code, answer.out.lines().count()), (1, 402), "{}", answer.err);
     for part in [
-        "400 inside their 95 %: the budget does not hold everywhere",
-        "1 of 400 errors are beyond ten times their 95 % and ten times the median error, the first at t = 20 s",
+        "400 within their 95 % bound: the 95 % bounds do not hold everywhere",
+        "1 of 400 errors exceed ten times their 95 % bound and ten times the median error, the first at t = 20 s",
     ] {
         assert!(answer.err.contains(part), "{part}: {}", answer.err);
     }
@@ -350,7 +353,7 @@ fn one_wild_row_and_a_start_alone_are_no_agreement() {
     let says = "no attitude after the start is at a time of ";
     assert!(answer.code == 1 && answer.err.contains(says), "{}", answer.err);
     assert!(
-        answer.err.contains("1 row compared") && !answer.err.contains("the budget holds"),
+        answer.err.contains("1 row compared") && !answer.err.contains("the 95 % bounds hold"),
         "{}",
         answer.err
     );
@@ -385,10 +388,10 @@ fn noise_of_a_reference_is_told_from_attitudes_that_are_off() {
     assert!(error > 10.0 * 2.795 * sigma, "{error} {sigma}");
     let by = 5.0 * 2.795 * last(&column(&noisy.out, "attitude_sigma"));
     let off = turned("off.csv", &[0, count - 1], &|k| if k == 0 { 0.0 } else { by });
-    let says = "1 of 1 errors are beyond twice their 95 %";
+    let says = "1 of 1 errors exceed twice their 95 % bound";
     assert!(off.code == 1 && off.err.contains(says), "{}", off.err);
     assert!(
-        off.err.contains("2 rows compared") && off.err.contains("the budget is contradicted"),
+        off.err.contains("2 rows compared") && off.err.contains("the 95 % bounds are contradicted"),
         "{}",
         off.err
     );
@@ -449,7 +452,7 @@ fn times_that_count_from_the_first_rows_of_two_files_are_compared_by_their_momen
         &["--against", "later.csv", "no attitude at the first time", "--start"],
     );
     let plain = scratch.file("plain.csv", "t,wx (rad/s),wy (rad/s),wz (rad/s)\n0,1,0,0\n0.1,1,0,0\n");
-    let says = "read from the first row on, 1700000000500, and those of the record count from no such moment";
+    let says = "counted from its first row, 1700000000500; the times of the record have no such origin";
     refused_with(&["attitude", &plain, "--against", &later], &["--against", "later.csv", says]);
 }
 
@@ -468,7 +471,7 @@ fn a_long_burst_that_is_left_out_is_a_gap() {
         }
     });
     let record = scratch.file("burst.csv", rows.collect::<String>());
-    let says = ["a burst of readings that are left out from ", "how the body turned in it", "--restart"];
+    let says = ["a burst of readings that are left out from ", "the turn in it is not known", "--restart"];
     refused_with(&["attitude", &record, "--kind", "rate"], &says);
     let restarted = run(&format!("attitude {record} --kind rate --restart"));
     assert_eq!(restarted.code, 0, "{}", restarted.err);

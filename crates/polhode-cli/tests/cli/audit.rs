@@ -300,17 +300,14 @@ fn what_cannot_be_audited_is_refused_with_file_line_and_column() {
     );
     refused("audit absent.csv", &["absent.csv: cannot be read", "name a text file"]);
     for force in ["--drag 1", "--orbit 3.986e14,3.8e7,4.2", "--orbit-plane 0deg,60deg,0deg"] {
-        refused(
-            &format!("audit {short} {force}"),
-            &["--moments: missing: a force acts on a body that is known"],
-        );
+        refused(&format!("audit {short} {force}"), &["--moments: missing: a force needs a body"]);
     }
     refused(&format!("audit {short} --columns q=1"), &["--columns", "'q=1' has no known key", "qw qx qy qz"]);
     refused(&format!("audit {short} --against {short}"), &["short.csv: no line '# moments: I1,I2,I3'"]);
     let own = scratch.file("README.md", "# Mine\n");
     refused(
         &format!("audit --golden {}", scratch.0.display()),
-        &["--golden", "README.md of another kind", "empty folder"],
+        &["--golden", "another README.md", "empty folder"],
     );
     assert_eq!(fs::read_to_string(own).unwrap(), "# Mine\n");
     let checks = scratch.0.join("checks");
@@ -359,7 +356,7 @@ fn angles_under_the_names_of_others_are_wrong() {
             (&expected.0.into(), &expected.1.into()),
             "{found:#}"
         );
-        let warned = found["warnings"].to_string().contains("stand for turns about x, y and z");
+        let warned = found["warnings"].to_string().contains("are turns about x, y and z");
         assert_eq!(warned, expected.0 == "wrong", "{found:#}");
         // nor is it beside others a trajectory of another convention
         let line = format!(
@@ -450,16 +447,19 @@ fn readings_that_are_wrong_alike_are_not_laid_to_noise() {
     let mistaken = output(motion).replace("q_w,q_x,q_y,q_z", "q_z,q_w,q_x,q_y");
     let file = scratch.file("mistaken.csv", mistaken);
     let answer = run(&format!("audit {file} --moments 1,2,3 --format csv"));
-    let says = "2 readings fit alike: the rows are a motion in none of them";
+    let says = "2 readings fit equally well: the rows do not obey the equations of motion in any of them";
     assert!(answer.code == 1 && answer.err.contains(says), "{answer:?}");
-    assert!(!answer.err.contains("noise or digits"), "{}", answer.err);
+    assert!(!answer.err.contains("noise or missing digits"), "{}", answer.err);
     // nor does a body whose rates were never written spin about one axis
     let zero = output(motion).lines().enumerate().fold(String::new(), |text, (k, line)| {
         let cells: Vec<&str> = line.split(',').collect();
         text + &if k == 0 { format!("{line}\n") } else { format!("{},0,0,0\n", cells[..5].join(",")) }
     });
     let answer = run(&format!("audit {} --moments 1,2,3 --format csv", scratch.file("zero.csv", zero)));
-    assert!(answer.code == 1 && answer.err.contains("the rows are a motion in none of them"), "{answer:?}");
+    assert!(
+        answer.code == 1 && answer.err.contains("the rows do not obey the equations of motion"),
+        "{answer:?}"
+    );
 }
 
 /// What is not read is not right; what stands twice is not read.
@@ -478,7 +478,7 @@ fn columns_that_are_not_read_are_named_and_none_stands_twice() {
     let twice = file("twice.csv", ",qw,qx,qy,qz", &[1.0, 0.0, 0.0, 0.0]);
     let answer = run(&format!("audit {twice} {BODY}"));
     assert_eq!(answer.code, 2, "{answer:?}");
-    assert!(answer.err.contains("columns 2 and 9 have this one name"), "{answer:?}");
+    assert!(answer.err.contains("columns 2 and 9 both have this name"), "{answer:?}");
     let answer = run(&format!("audit {beside} {BODY} --tolerance 0.5"));
     assert!(answer.code == 2 && answer.err.contains("0.5 is more than 0.1"), "{answer:?}");
 }
@@ -532,7 +532,7 @@ fn any_order_is_refused_where_no_moments_could_change_places() {
     assert_eq!((code(""), code("--any-order")), (1, 0));
     refused(&format!("audit {file} --any-order"), &["--any-order: no moments are given"]);
     let wheel = format!("audit {file} {BODY} --wheel 0,0,1,0.05@3 --any-order");
-    refused(&wheel, &["--any-order: the wheels are along axes of the body"]);
+    refused(&wheel, &["--any-order: a body with wheels has its moments in a fixed order"]);
 }
 
 /// What is written of a row.
@@ -556,9 +556,9 @@ fn a_golden_trajectory_is_read_by_the_rules_of_any_other() {
     let second = "t,q_w,q_x,q_y,q_z,box2_qw,box2_qx,box2_qy,box2_qz";
     let cases: [(&str, Cells, &str); 4] = [
         (second, &|r| [&r[..5], &r[1..5]].concat(), "the columns box2_qw, box2_qx, box2_qy, box2_qz hold"),
-        ("t,q0,q1,q2,q3", &|r| r[..5].to_vec(), "do not say where the scalar stands"),
-        ("t,phi,theta,psi", &|r| r[..4].to_vec(), "do not say their sequence"),
-        ("t,sigma_1,sigma_2,sigma_3", &|r| vec![r[0], 1e200, 0.0, 0.0], "too large for a number"),
+        ("t,q0,q1,q2,q3", &|r| r[..5].to_vec(), "do not show whether the scalar is first or last"),
+        ("t,phi,theta,psi", &|r| r[..4].to_vec(), "the sequence of its Euler angles is not known"),
+        ("t,sigma_1,sigma_2,sigma_3", &|r| vec![r[0], 1e200, 0.0, 0.0], "outside the range of a double"),
     ];
     for (header, of, says) in cases {
         refused(&against(header, of), &["golden.csv: ", says, "polhode audit --golden DIR"]);
@@ -605,7 +605,7 @@ fn dates_and_counts_since_1970_are_matched_by_their_moments() {
         assert_eq!((&found["against"]["rows"], &found["against"]["of"]), (&101.into(), &101.into()));
     }
     let plain = written("plain.csv", "t", &all, &|t: f64| t.to_string());
-    let says = "read from the first row on, 1700000010000, and those of the record count from no such moment";
+    let says = "counted from its first row, 1700000010000; the times of the record have no such origin";
     refused(&format!("audit {plain} --against {late_counts}"), &["late-counts.csv: ", says, "since 1970"]);
     // an hour that nobody told
     let open = written("open.csv", "t", &all, &unzoned);
@@ -637,7 +637,7 @@ fn a_comparison_of_some_rows_promises_nothing_of_all() {
     assert_eq!((code, found.as_str(), rows), (0, "right", 161.into()), "{told}");
     assert!(
         told.contains("161 of the 321 rows of")
-            && !told.contains("without the others the record is not called right"),
+            && !told.contains("all times of one file must be in the other"),
         "{told}"
     );
     // the times of both are the multiples of 0.375 s up to 20 s
@@ -645,7 +645,7 @@ fn a_comparison_of_some_rows_promises_nothing_of_all() {
     assert_eq!((code, found.as_str(), rows), (1, "undecided", 54.into()), "{told}");
     for part in ["54 of the 161 rows of", "(t = 0 to 30 s)", "161 rows of the record (t = 0 to 20 s)"] {
         assert!(
-            told.contains(part) && told.contains("without the others the record is not called right"),
+            told.contains(part) && told.contains("all times of one file must be in the other"),
             "{part}: {told}"
         );
     }

@@ -92,14 +92,14 @@ fn the_phase_error_is_predicted_and_taken_back() {
         assert!(found.code != 0 && found.err.contains(words), "{line}: {} {}", found.code, found.err);
     };
     refused(&format!("{free} rk4+phase"), "its energy drifts");
-    refused(&format!("{free} rattle+phase+phase"), "is taken back");
+    refused(&format!("{free} rattle+phase+phase"), "corrects its phase error");
     // under weak forces both are as those of the free body for a while
     let weak = "compare --moments 1,2,3 --omega 0.4,1,-0.3 --gravity-gradient 0.01 --steps 0.05 --phase --methods rattle,rattle+phase";
     let found = self::rows(&output(&format!("{weak} --until 20")));
     let (error, predicted) = (number(&found[0], "attitude_error"), number(&found[0], "predicted_error"));
     assert!((predicted / error - 1.0).abs() < 0.02, "{found:?}");
     assert!(number(&found[1], "attitude_error") < 0.02 * error && cell(&found[1], "evaluations").is_empty());
-    refused(&format!("{weak} --until 20000"), "where a hundredth of its growth may be another");
+    refused(&format!("{weak} --until 20000"), "where its growth may differ by a hundredth");
     refused(
         "compare --moments 1,1,0.5 --omega 0,0.1,20 --weight-moment 0,0,1 --until 1 --steps 0.125 --methods rattle+phase",
         "rattle+phase",
@@ -142,7 +142,7 @@ fn a_trajectory_of_another_program_is_a_row() {
         "{TEXTBOOK} --until 20 --methods rk4 --steps 0.5 --trajectory {right} --trajectory {mistaken}"
     );
     let answer = run(&line);
-    let elsewhere = "mistaken.csv: its first attitude is 3.14 rad off the true motion";
+    let elsewhere = "mistaken.csv: its first attitude differs by 3.14 rad from the true motion";
     assert!(answer.code == 0 && answer.err.contains(elsewhere), "{}", answer.err);
     let found = rows(&answer.out);
     assert_eq!(cell(&found[1], "method"), right);
@@ -168,11 +168,11 @@ fn a_trajectory_of_another_program_is_a_row() {
         assert!((number(row, "energy_error") - energy).abs() < 1e-12, "{row:?}");
         assert!((number(row, "momentum_vector_error") - momentum).abs() < 1e-12, "{row:?}");
         assert_eq!(cell(row, "status"), "rates contradict");
-        for part in ["scaled.csv: its angular velocities are off", told, "contradict each other"] {
+        for part in ["scaled.csv: its angular velocities differ", told, "contradict each other"] {
             assert!(answer.err.contains(part), "{part}: {}", answer.err);
         }
         // the table is printed, and its file is not promised to be right
-        let failure = "error: rates contradict the attitudes beside them: ";
+        let failure = "error: rates and attitudes contradict each other: ";
         assert!(answer.code == 1 && answer.err.contains(failure), "{}", answer.err);
     }
     // without angular velocities there is the attitude alone
@@ -192,12 +192,12 @@ fn a_trajectory_of_another_program_is_a_row() {
     );
     refused(
         &flags(&bad("b.csv", "t,w,x,y,z\n1,1,0,0,0\n1,1,0,0,0\n")),
-        &["b.csv, line 3, column 1 (t): '1'", "two rows have one time"],
+        &["b.csv, line 3, column 1 (t): '1'", "two rows have the same time"],
     );
     refused(&flags(&bad("c.csv", "t,w,x,y,z\n21,1,0,0,0\n")), &["c.csv: '21'", "t from 0 to 20"]);
     refused(
         &flags(&bad("d.csv", "t,w,x,y,z\n2,0,0,0,0\n")),
-        &["d.csv, line 2, column 2 (w): '0'", "is no rotation"],
+        &["d.csv, line 2, column 2 (w): '0'", "is not a rotation"],
     );
     refused(
         &flags(&bad("e.csv", "t,w,x,y,z\n2,1,0,zero,0\n")),
@@ -257,7 +257,7 @@ fn what_a_trajectory_holds_and_is_not_compared_is_told() {
     assert_eq!(told(&same), format!("warning: {same}: not read: t, lift\n"));
     let late = |row: &[f64]| if row[0] > 10.0 { 400.0 } else { 0.0 };
     let jump = file("jump.csv", "time_ms", &|row| format!("{}", 1000.0 * row[0] - late(row)));
-    let says = "not read: t; column 't' is a time too, and does not go with the times that are read";
+    let says = "not read: t; column 't' is also a time and contradicts the times that are read";
     assert!(told(&jump).contains(says), "{}", told(&jump));
     let momenta =
         file("momenta.csv", "lx,ly,lz", &|row| format!("{},{},{}", row[5], 2.0 * row[6], 3.0 * row[7]));
@@ -304,7 +304,7 @@ fn flags_that_no_trajectory_has_a_use_for_are_refused() {
     let order = "--quaternion xyzw";
     refused(
         &format!("{line} {parameters} {order}"),
-        &["--quaternion: 'xyzw': says how a quaternion is written, and none is read"],
+        &["--quaternion: 'xyzw': is for a quaternion, and none is read"],
     );
     // one of several has a use for it
     let numbered = scratch.file("numbered.csv", poses.replace("q_w,q_x,q_y,q_z", "q0,q1,q2,q3"));
@@ -344,7 +344,7 @@ fn rows_beside_the_known_motion_are_not_judged() {
     let answer = run(&format!("{top} {file}"));
     let row = &rows(&answer.out)[1];
     assert_eq!((cell(row, "status"), number(row, "attitude_time")), ("ok", 0.0));
-    assert!(answer.err.contains("s is at t = 0 s: its errors are of that time"), "{}", answer.err);
+    assert!(answer.err.contains("its last row is at t = 0 s: its errors are those at that time"), "{}", answer.err);
     let failure = format!("error: no row behind the start is compared: {file}");
     assert!(answer.code == 1 && answer.err.contains(&failure), "{}", answer.err);
     // one row, which is the start

@@ -85,7 +85,7 @@ fn what_a_fit_warned_of_is_told_once_wherever_its_tensor_is_the_body() {
     let expected = told(&format!("{joint} of 'object'"), ["carrier: noisy", "apart"]);
     assert_eq!((answer.code, answer.err), (0, expected));
     let other = scratch.file("other.json", format!("{{{tensor}, \"warnings\": [3]}}"));
-    refused(&format!("motion --body {other} {start}"), &["other.json: \"warnings\" is no list of texts"]);
+    refused(&format!("motion --body {other} {start}"), &["other.json: \"warnings\" is not a list of texts"]);
 }
 
 #[test]
@@ -124,7 +124,7 @@ fn a_link_of_a_model_is_named_behind_a_colon() {
         refused(&format!("propagate --body {file}:upper {start}"), &["2 bodies of the file have this name"]);
     }
     let answer = run(&format!("inertia urdf {twice}"));
-    assert!(answer.code == 1 && answer.err.contains("the name stands at"), "{answer:?}");
+    assert!(answer.code == 1 && answer.err.contains("the name is already used at"), "{answer:?}");
     let model = scratch.file(
         "model.xml",
         "<mujoco><compiler angle='Radian'/><body name='a'><geom size='1' mass='1'/></body></mujoco>",
@@ -171,7 +171,7 @@ fn files_without_a_body_are_refused() {
     refused(&of("a.json", "{\"mass\": 1}"), &["a.json", "no \"inertia\"", "polhode inertia"]);
     refused(&of("b.json", "{"), &["b.json", "line 1"]);
     let both = "{\"inertia\": [1,2,3,0,0,0], \"shape\": [[0.2,0,0],[0,0.3,0],[0,0,0.5]]}";
-    refused(&of("both.json", both), &["both.json", "\"inertia\" is no 3 x 3 numbers"]);
+    refused(&of("both.json", both), &["both.json", "\"inertia\" is not an array of 3 x 3 numbers"]);
     refused(&of("c.json", "{\"inertia\": [[1,0,0],[0,1,0],[0,0,3]]}"), &["c.json", "I1 + I2 >= I3"]);
     refused(&of("d.txt", "1,2,3"), &["d.txt", ".json, .toml, .stl, .obj, .ply, .urdf, .mjcf, .sdf or .xml"]);
     refused(&of("e.toml", "[[part]]\nshape = \"cube\"\n"), &["e.toml:2", "no such shape 'cube'"]);

@@ -99,9 +99,9 @@ fn what_rows_do_not_say_is_said_beside_them() {
         (answer.out.lines().count(), answer.err)
     };
     let (lines, said) = note("rate > 0.5rad/s", "");
-    assert!(lines == 2 && said.contains("rate > 0.5rad/s: is the case at the start already"), "{said}");
+    assert!(lines == 2 && said.contains("rate > 0.5rad/s: already true at the start"), "{said}");
     let (lines, said) = note("rate > 5rad/s", "");
-    assert!(lines == 1 && said.contains("nothing of it happens from 0 s to 10 s"), "{said}");
+    assert!(lines == 1 && said.contains("none of the events happens from 0 s to 10 s"), "{said}");
     // the bounds of the closed form exclude that a cone is missed, and say nothing of a nearest approach
     assert!(!note(CONE, "").1.contains("may be missed"));
     let (_, said) = note("nearest(0.6,0,0.8,0)", "");
@@ -152,7 +152,7 @@ fn events_before_a_run_diverges_are_rows() {
     // of a motion that ends early nobody says what does not happen in it
     let none = run(&format!("{wild} --event 'rate < 1e-9rad/s' --format csv"));
     assert_eq!((none.code, none.out.lines().count()), (1, 1), "{none:?}");
-    assert!(!none.err.contains("nothing of it happens"), "{}", none.err);
+    assert!(!none.err.contains("none of the events happens"), "{}", none.err);
 }
 
 /// An axis that stays at the limit of a cone is there once, at the start, and hides no event of another.
@@ -180,7 +180,7 @@ fn what_is_no_event_is_refused() {
     let with = |event: &str, flags: &str, says: &[&str]| {
         refused(&format!("{BODY} {flags} --event '{event}'"), says);
     };
-    with("flips", "--until 10", &["--event", "no event that is known", "write flip"]);
+    with("flips", "--until 10", &["--event", "unknown event", "write flip"]);
     with("angle(body z, space x) < 10", "--until 10", &["has no unit", "10deg"]);
     with("angle(body (0,0,0), space x) < 10deg", "--until 10", &["--event", "a vector with a direction"]);
     with("angle(body z, space x) < 190deg", "--until 10", &["between 0 and pi"]);
@@ -191,7 +191,7 @@ fn what_is_no_event_is_refused() {
     with("flip", "--until 10 --times-column 3", &["--times-column: '3'", "--times names none"]);
     with("flip", "--until -1", &["--until", "does not come after the start"]);
     with("flip", "--until 10 --every 0", &["--every", "positive"]);
-    with("flip", "--until 1e9 --every 1e-9", &["--every", "are too many"]);
+    with("flip", "--until 1e9 --every 1e-9", &["--every", "is too long"]);
     with("flip", "--until 10 --fields t,energy_error", &["--fields", "energy_error", "leave it out"]);
     with("flip", "--until 10 --method rk4", &["--step: missing"]);
     let round = "propagate --moments 1,1,2 --omega 0.3,0,1 --until 10 --event flip";

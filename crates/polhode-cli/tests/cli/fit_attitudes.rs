@@ -135,8 +135,8 @@ fn a_flag_of_a_form_of_attitudes_that_no_file_has_is_refused() {
     let quaternions = scratch.file("quaternions.csv", table("t,q0,q1,q2,q3", (0..30).map(quaternion)));
     let rated = (0..30).map(|k| [quaternion(k), vec![0.0, 0.0, 0.1]].concat());
     let rated = scratch.file("rated.csv", table("t,q0,q1,q2,q3,wx (rad/s),wy (rad/s),wz (rad/s)", rated));
-    let of_quaternions = "says how a quaternion is written, and none is read";
-    let of_angles = "says how a triple of Euler angles is written, and none is read";
+    let of_quaternions = "is for a quaternion, and none is read";
+    let of_angles = "is for a triple of Euler angles, and none is read";
     refused(2, &format!("fit {matrices} --quaternion xyzw"), &["--quaternion: 'xyzw'", of_quaternions]);
     for flag in ["--euler zyx", "--angle-unit deg"] {
         refused(2, &format!("fit {matrices} {flag}"), &[of_angles]);

@@ -115,7 +115,7 @@ fn readings_under_two_names_are_said_to_count_twice() {
         let told = |line: &str| run(&format!("fit {line} --from {from}")).err;
         let found = told(&format!("{one} {copy}"));
         assert!(
-            found.contains(&format!("copy.csv: {count} of its {count} samples are those of a file")),
+            found.contains(&format!("copy.csv: {count} of its {count} samples are also in a file")),
             "{found}"
         );
         let (head, rows) = text.split_once('\n').unwrap();

@@ -51,7 +51,7 @@ fn standard_output_is_no_file_of_that_name() {
     ] {
         let answer = polhode(&words(line), &scratch.0);
         assert_eq!((answer.code, answer.out.as_str()), (2, ""), "{line}: {}", answer.err);
-        assert!(answer.err.contains("--out: '-': stands for standard output"), "{line}: {}", answer.err);
+        assert!(answer.err.contains("--out: '-': means standard output"), "{line}: {}", answer.err);
     }
     assert!(scratch.names().is_empty());
 }

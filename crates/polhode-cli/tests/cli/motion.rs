@@ -73,7 +73,7 @@ fn periods_make_a_start_and_come_back() {
 #[test]
 fn periods_without_a_motion_are_refused() {
     let of = |flags: &str| format!("motion --moments 0.61,0.965,1 {flags}");
-    refused(&of("--periods 1h,5h --mode sam"), &["--periods: P_psi/P_phi = 5.0", "ratios above 7.56"]);
+    refused(&of("--periods 1h,5h --mode sam"), &["--periods: P_psi/P_phi = 5.0", "must be above 7.56"]);
     refused(&of("--periods 1h --mode sam"), &["--periods", "1 given, 2 needed"]);
     refused(&of("--periods 1h,0h --mode sam"), &["--periods", "not positive"]);
     refused(&of("--periods 1h,10h"), &["--mode"]);
@@ -120,7 +120,7 @@ fn any_two_of_three_periods_are_a_start() {
     }
     let of = |periods: &str| format!("motion --moments 0.61,0.965,1 --mode sam --periods {periods}");
     refused(&of("P_1=30h,27h"), &["--periods", "name both periods or none"]);
-    refused(&of("P_2=30h,P_psi=263h"), &["--periods", "'P_2' is no period"]);
+    refused(&of("P_2=30h,P_psi=263h"), &["--periods", "unknown period 'P_2'"]);
     refused(&of("P_1=30h,P_1=263h"), &["--periods", "P_1 is given twice"]);
     refused(&of("P_1=20h,P_phi=27h"), &["--periods: P_1 = ", "1/P_1 = 1/P_phi - 1/P_psi"]);
 }
@@ -149,5 +149,5 @@ fn a_start_is_turned_from_the_ecliptic_to_the_equator() {
     }
     refused("motion --body phone --to-frame icrf", &["--to-frame", "needs the axes", "--frame"]);
     refused("motion --body toutatis --frame icrf", &["--frame", "ecliptic J2000", "--to-frame"]);
-    refused("motion --body toutatis --frame equator", &["--frame", "'equator' is no frame"]);
+    refused("motion --body toutatis --frame equator", &["--frame", "unknown frame 'equator'"]);
 }

@@ -385,7 +385,7 @@ fn a_link_of_two_tensors_is_invalid() {
     for line in ["urdf links.urdf", "urdf tensors.urdf", "mjcf bodies.xml"] {
         let answer = scratch.run(line);
         assert_eq!(answer.code, 1, "{line}");
-        assert!(answer.err.contains("a second time; leave one out"), "{line}: {answer:?}");
+        assert!(answer.err.contains("is given twice; leave one out"), "{line}: {answer:?}");
     }
 }
 

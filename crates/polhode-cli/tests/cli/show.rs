@@ -395,7 +395,7 @@ fn what_cannot_be_shown_is_refused_with_what_can() {
     refused(&with(&format!("--until 5 {four} --out a.html")), &["--against: given 4 times", "at most 3"]);
     refused(
         &with("--until 1e7 --out a.html"),
-        &["--until: '10000000'", "a page holds no more", "earlier end"],
+        &["--until: '10000000'", "a page has at most so many", "earlier end"],
     );
     refused(&with("--until 5 --time-unit ms --out a.html"), &["--time-unit", "give --against FILE"]);
     let order = "--until 5 --quaternion xyzw --out a.html";

@@ -298,13 +298,13 @@ fn what_one_command_refuses_every_command_refuses_in_the_same_words() {
         (
             "two columns of one name",
             with("t,qw,qx,qy,qz,wx,wx,wz"),
-            "line 1: columns 6 and 7 have this one name",
+            "line 1: columns 6 and 7 both have this name",
             false,
         ),
         (
             "two times",
             with("t,qw,qx,qy,qz,wx,wy,wz").replace("t,qw", "t,t"),
-            "line 1: columns 1 and 2 have this one name",
+            "line 1: columns 1 and 2 both have this name",
             true,
         ),
         (
@@ -328,13 +328,13 @@ fn what_one_command_refuses_every_command_refuses_in_the_same_words() {
         (
             "a counter in place of time",
             with("Packet number,qw,qx,qy,qz,wx,wy,wz"),
-            "line 1, column 1 (Packet number): counts samples and is no time",
+            "line 1, column 1 (Packet number): counts samples and is not a time",
             false,
         ),
         (
             "an unknown unit",
             with("t,qw,qx,qy,qz,wx (mph),wy,wz"),
-            "line 1, column 6 (wx (mph)): 'mph': no unit that is known here",
+            "line 1, column 6 (wx (mph)): 'mph': unknown unit",
             false,
         ),
         (

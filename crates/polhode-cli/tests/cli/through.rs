@@ -95,7 +95,7 @@ fn what_is_no_table_of_attitudes_is_refused() {
     };
     let two = "t,q_w,q_x,q_y,q_z\n0,1,0,0,0\n1,0.8,0.6,0,0\n";
     refuse("t,q_w,q_x,q_y,q_z\n0,1,0,0,0\n", "", "too few");
-    refuse("t,q_w,q_x,q_y,q_z\n0,1,0,0,0\n1,0,0,0,0\n", "", "which is no rotation");
+    refuse("t,q_w,q_x,q_y,q_z\n0,1,0,0,0\n1,0,0,0,0\n", "", "which is not a rotation");
     refuse("t,wx,wy,wz\n0,1,0,0\n1,0,0,0\n", "", "no quaternions");
     refuse(two, "--turns 0.01", "allow more turns");
     refuse(two, "--omega 1,2,3", "--omega");

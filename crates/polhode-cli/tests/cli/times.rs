@@ -42,9 +42,9 @@ fn times_have_units_and_dates() {
     assert_eq!(output(&with(utc)), output(&with("--times 86401,86401")));
     refused(
         &with("--epoch 1992-11-09T12:00 --times 1992-11-09T18:00:00Z"),
-        &["--times: '1992-11-09T18:00:00Z': one date is in UTC", "a minute off"],
+        &["--times: '1992-11-09T18:00:00Z': one date is in UTC", "differ by a minute"],
     );
-    refused(&with("--epoch 2017-01-01 --times 1h --time-scale GMT"), &["'GMT' is no time scale"]);
+    refused(&with("--epoch 2017-01-01 --times 1h --time-scale GMT"), &["unknown time scale 'GMT'"]);
     let span = "--epoch 2448936 --until 1992-11-10T12:00 --every 12h --start-time 2448936";
     assert_eq!(output(&with(span)), output(&with("--until 86400 --every 43200")));
     let rk4 = "--until 500ms --every 250ms --method rk4 --step 125ms";
@@ -56,10 +56,19 @@ fn times_that_cannot_be_used_are_refused_by_file_line_and_column() {
     let scratch = Scratch::new("times-refused");
     let of = |name: &str, text: &str| format!("--times {}", scratch.file(name, text));
     let other = "9007199254740993";
-    refused(&with(&format!("--times 1,{other}")), &["--times: item 2", "no double", "9.007199254740992e15"]);
-    refused(&with(&format!("--until {other} --every 1d")), &["--until: '9007199254740993'", "no double"]);
-    refused(&with(&of("h", &format!("{other}\n"))), &["h, line 1", "no double"]);
-    refused(&with(&of("i", &format!("t (ns)\n{other}\n"))), &["i, line 2", "no double", "a later moment"]);
+    refused(
+        &with(&format!("--times 1,{other}")),
+        &["--times: item 2", "too many digits for a double", "9.007199254740992e15"],
+    );
+    refused(
+        &with(&format!("--until {other} --every 1d")),
+        &["--until: '9007199254740993'", "too many digits for a double"],
+    );
+    refused(&with(&of("h", &format!("{other}\n"))), &["h, line 1", "too many digits for a double"]);
+    refused(
+        &with(&of("i", &format!("t (ns)\n{other}\n"))),
+        &["i, line 2", "too many digits for a double", "a later time"],
+    );
     refused(&with(&of("a", "1\n2\nx\n")), &["a, line 3, column 1 (t): 'x': is not a number"]);
     refused(&with(&of("b", "t,mag\n1,\n,2\n")), &["b, line 3, column 1 (t): a number is missing"]);
     refused(
@@ -67,7 +76,7 @@ fn times_that_cannot_be_used_are_refused_by_file_line_and_column() {
         &["c, line 1: no column for time", "'when', 'mag'", "--times-column"],
     );
     refused(&with(&of("d", "")), &["d: no rows", "one time a line"]);
-    refused(&with(&of("e", "1\n1e300\n")), &["--times: 1e300", "can be answered"]);
+    refused(&with(&of("e", "1\n1e300\n")), &["--times: 1e300", "with an answer"]);
     let stepped = of("f", "0.5\n0.3\n");
     refused(&with(&format!("{stepped} --method rk4 --step 0.125")), &["--times: 0.3 comes after 0.5"]);
     refused(
@@ -79,7 +88,7 @@ fn times_that_cannot_be_used_are_refused_by_file_line_and_column() {
         &with("--times 1 --epoch tomorrow"),
         &["--epoch", "'tomorrow' is not a date", "2025-11-22T10:20:30"],
     );
-    refused(&with("--times 3fortnights"), &["'fortnights' is no unit of time", "min, h or d"]);
+    refused(&with("--times 3fortnights"), &["unknown unit of time 'fortnights'", "min, h or d"]);
     refused(&with("--until 1e999 --every 1"), &["--until: '1e999'", "finite"]);
     refused(&with("--until 1 --every 1 --times-column 2"), &["--times-column", "--times"]);
 }
@@ -118,7 +127,8 @@ fn euler_angles_are_columns_and_a_start() {
     assert!((last(&turned) + 0.2).abs() < 1e-15, "{turned}");
     // a unit that was forgotten
     let silent = run(&degrees);
-    let says = "17.188733853924695 is taken as rad, beyond a whole turn; --angle-unit deg";
+    let says =
+        "17.188733853924695 is taken as rad and exceeds a whole turn; for degrees give --angle-unit deg";
     assert!(silent.code == 0 && silent.err.contains(says), "{silent:?}");
     refused(&with("--times 0 --euler zxx"), &["--euler", "zxx", "such as zxz"]);
     refused(&with("--times 0 --euler zyx --fields t,q"), &["--euler: 'zyx'", "none are given"]);
@@ -201,11 +211,11 @@ fn the_attitude_of_the_catalogue_stays_unless_another_is_given() {
     }
     let dated = |epoch: &str| run(&format!("propagate --body toutatis --epoch {epoch} --times 1992-11-10"));
     assert_eq!(dated("1992-11-09T17:49:47").err, "");
-    assert!(dated("1992-11-09T17:50").err.contains("published start is of 1992-11-09T17:49:47 UTC"));
+    assert!(dated("1992-11-09T17:50").err.contains("published start is that at 1992-11-09T17:49:47 UTC"));
     // it is the date of --start-time that counts, not that of t = 0
     assert_eq!(dated("1992-11-08T17:49:47 --start-time 1992-11-09T17:49:47").err, "");
     let late = dated("1992-11-09T17:49:47 --start-time 6h").err;
-    assert!(late.contains("that of --start-time, +21600 s from there"), "{late}");
+    assert!(late.contains("it is used at --start-time, +21600 s from it"), "{late}");
 }
 
 #[test]

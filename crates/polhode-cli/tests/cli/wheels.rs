@@ -206,7 +206,7 @@ fn members_of_an_ensemble_carry_wheels() {
     let driven = scratch.file("driven.toml", spec(&drives[2], "method = \"exact\""));
     let answer = polhode(&words(&format!("ensemble {driven} --out none")), &scratch.0);
     assert_eq!(answer.code, 2);
-    assert!(answer.err.contains("while no motor works"), "{}", answer.err);
+    assert!(answer.err.contains("while no motor acts"), "{}", answer.err);
     let tumbling = spec("speed = \"600rpm\"", "method = \"exact\"");
     let elements = "periods = [27.38, 263]\nmode = \"sam\"";
     let tumbling = tumbling
@@ -229,13 +229,16 @@ fn wheels_that_are_wrong_are_refused_with_the_rule() {
         (format!("propagate {MOMENTS} --wheel 0,0,0,0.1@3 {MOTION} --times 1"), "no direction"),
         (
             format!("propagate {MOMENTS} --wheel 1,0,0,8@3 {MOTION} --times 1"),
-            "does not fit into that of body and wheels",
+            "is too large for that of body and wheels",
         ),
-        (format!("propagate {MOMENTS} --wheel 1,0,0,0.1@3Hz {MOTION} --times 1"), "no unit of rates"),
+        (
+            format!("propagate {MOMENTS} --wheel 1,0,0,0.1@3Hz {MOTION} --times 1"),
+            "unknown unit of rates 'Hz'",
+        ),
         (format!("propagate --body {number} --omega 1,0,0 --times 1"), "600.0 has no unit"),
         (
             format!("propagate {MOMENTS} --wheel 1,0,0,0.1@3,torque=0.1 {MOTION} --times 1"),
-            "a closed form is known while no motor works",
+            "the closed form holds only while no motor acts",
         ),
         (
             format!("propagate {MOMENTS} --wheel 1,0,0,0.1@3 {MOTION} --method dmv:10 --step 0.1 --times 1"),
@@ -245,12 +248,12 @@ fn wheels_that_are_wrong_are_refused_with_the_rule() {
             format!("propagate {MOMENTS} --wheel 1,0,0,0.1@3 --periods 2h,3h --mode lam --times 1"),
             "body without wheels",
         ),
-        (format!("audit {number} --wheel 1,0,0,0.1@3"), "a wheel is one of a body that is told by a flag"),
+        (format!("audit {number} --wheel 1,0,0,0.1@3"), "a wheel needs a body"),
         (format!("motion {MOMENTS} --omega 1,0,0 --steady"), "body with wheels"),
         (format!("motion {MOMENTS} --omega 1,0,0 --wheel 0,0,1,0.1@1e300"), "outside the range of a double"),
         (
             format!("simulate {MOMENTS} --wheel 1,0,0,12@3,free --omega 1,0,0 --until 1 --every 0.1"),
-            "does not fit into that of body and wheels",
+            "is too large for that of body and wheels",
         ),
     ] {
         let answer = polhode(&words(&line), &scratch.0);

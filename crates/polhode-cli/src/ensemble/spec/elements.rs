@@ -34,7 +34,7 @@ pub(super) fn elements(
     let mode = match (table.text("mode")?, before) {
         (Some(name), _) => ModeArgument::from_str(name, true)
             .map(Mode::from)
-            .map_err(|_| table.at("mode", &format!("'{name}' is no mode; write \"lam\" or \"sam\"")))?,
+            .map_err(|_| table.at("mode", &format!("unknown mode '{name}'; write \"lam\" or \"sam\"")))?,
         (None, Some(before)) => before.mode,
         (None, None) => return Err(table.at(given, "needs a mode; give mode = \"lam\" or \"sam\"")),
     };
@@ -57,7 +57,7 @@ fn periods_of(table: &Section<'_>) -> Result<Option<Periods>, Error> {
             Some(&[precession, rotation]) if precession > 0.0 && rotation > 0.0 => {
                 Ok(Some(Periods::Both([precession, rotation])))
             }
-            _ => Err(table.at("periods", "needed are two times above zero, [P_phi, P_psi]")),
+            _ => Err(table.at("periods", "expected two times above zero, [P_phi, P_psi]")),
         },
     }
 }
@@ -74,7 +74,7 @@ fn rest(table: &Section<'_>, units: Units, elements: TumblingElements) -> Result
     let reversed = match table.value("reversed").map(|value| value.get_ref()) {
         None => elements.is_reversed,
         Some(DeValue::Boolean(reversed)) => *reversed,
-        Some(_) => return Err(table.at("reversed", "needed is true or false")),
+        Some(_) => return Err(table.at("reversed", "expected true or false")),
     };
     let (pole, phases) = (angles("pole", elements.pole)?, angles("phases", elements.angles)?);
     Ok(elements.with_pole(pole).with_angles(phases).with_reversed(reversed))
@@ -120,7 +120,7 @@ impl Spread {
             let table = Section { file: spread.file, place: value.span().start, keys };
             table.only("[spread.covariance] of elements", &["elements"])?;
             if let Some(key) = SPREAD.into_iter().find(|key| spread.value(key).is_some()) {
-                return Err(spread.at(key, "the spread of it is given twice; leave one of them out"));
+                return Err(spread.at(key, "its spread is given twice; leave one of them out"));
             }
             let matrix = table.rows::<8, 8>("elements")?;
             let mut matrix = matrix.ok_or_else(|| spread.at("covariance", "elements missing in it"))?;
@@ -185,7 +185,7 @@ pub(super) fn population(
 
 /// The tables of `[[solution]]`.
 fn solutions<'t>(top: &Section<'t>) -> Result<Vec<Section<'t>>, Error> {
-    let needed = || top.at("solution", "needed are tables [[solution]], each with a weight");
+    let needed = || top.at("solution", "expected tables [[solution]], each with a weight");
     let Some(value) = top.value("solution") else { return Ok(Vec::new()) };
     let DeValue::Array(items) = value.get_ref() else { return Err(needed()) };
     let table = |item: &'t toml::Spanned<DeValue<'t>>| match item.get_ref() {

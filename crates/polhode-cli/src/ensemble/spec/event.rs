@@ -39,7 +39,7 @@ impl Watched {
         let bounded = typed.made(&body).map_err(|error| refused(&error))?.is_bounded();
         let every = event_of.seconds("every")?;
         if every.is_some_and(|every| every <= 0.0) {
-            return Err(event_of.at("every", "is no time between looks; give a positive one"));
+            return Err(event_of.at("every", "the time between looks must be positive"));
         }
         let spacing = every.unwrap_or_else(|| spacing(member.omega_body.norm(), last - start));
         let (spacing, may_miss) = match &spec.plan.motion {

@@ -299,7 +299,7 @@ fn arrays(output: &Section<'_>) -> Result<[bool; 2], Error> {
     const KNOWN: [&str; 2] = ["attitudes", "omegas"];
     let Some(value) = output.value("arrays") else { return Ok([true; 2]) };
     let needed =
-        || output.at("arrays", "needed is a list of names, of \"attitudes\" and \"omegas\"; [] keeps none");
+        || output.at("arrays", "expected a list of names, of \"attitudes\" and \"omegas\"; [] keeps none");
     let DeValue::Array(items) = value.get_ref() else { return Err(needed()) };
     let mut kept = [false; 2];
     for item in items.iter().map(Spanned::get_ref) {

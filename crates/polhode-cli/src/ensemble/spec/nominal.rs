@@ -90,7 +90,9 @@ impl Nominal {
             body.text("body")?.and_then(|name| catalogue::body(name).or_else(|| catalogue::top(name)));
         let typed = start.numbers::<4>("attitude")?;
         if typed == Some([0.0; 4]) {
-            return Err(start.at("attitude", "the zero quaternion has no direction; any other norm is fine"));
+            return Err(
+                start.at("attitude", "the zero quaternion is not a rotation; any other norm is accepted")
+            );
         }
         let omega = start.numbers::<3>("omega")?.map(|omega| omega.map(|rate| rate * units.rate));
         if let (None, None, Some(published)) = (typed, &elements, &published) {
@@ -175,7 +177,7 @@ fn epoch(start: &Section<'_>) -> Result<Option<Epoch>, Error> {
     let scale = scale.map_err(|error| read("time_scale", error))?;
     let found = start.text("epoch")?.map(date).transpose().map_err(|error| read("epoch", error))?;
     if let (None, Some(_)) = (found, scale) {
-        return Err(start.at("time_scale", "is that of dates; give epoch, the date of t = 0, too"));
+        return Err(start.at("time_scale", "belongs to dates; give epoch, the date of t = 0, too"));
     }
     Ok(found.map(|date| Epoch::new(date, scale)))
 }
@@ -255,8 +257,8 @@ fn acting(force: &Section<'_>, own: [f64; 3], own_orbit: Option<Orbit>) -> Resul
             (Some(name), Some(gm)) => {
                 Some(table(&force.file.path.parent().unwrap_or(Path::new("")).join(name), gm)?)
             }
-            (Some(_), None) => return Err(force.at("orbit_table", "needs gm, of the mass that it is about")),
-            (None, Some(_)) => return Err(force.at("gm", "is that of an orbit_table; give one")),
+            (Some(_), None) => return Err(force.at("orbit_table", "needs gm, that of the attracting mass")),
+            (None, Some(_)) => return Err(force.at("gm", "belongs to an orbit_table; give one")),
         },
         torque_body: force.numbers("torque_body")?,
         torque_space: force.numbers("torque_space")?,

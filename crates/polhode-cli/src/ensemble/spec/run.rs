@@ -161,7 +161,7 @@ fn method_of(run: &Section<'_>, name: &str, tolerance: Option<f64>) -> Result<Bo
 }
 
 fn without_tolerance(name: &str) -> String {
-    format!("method {name} does not choose its steps; leave it out, or take one of {}", adaptive())
+    format!("method {name} does not choose its steps; leave it out, or use one of {}", adaptive())
 }
 
 /// The times in a file that stands beside the specification.
@@ -203,7 +203,7 @@ fn times(run: &Section<'_>, start: f64, every: Option<f64>, epoch: Option<Epoch>
         (None, Some(_), None) => return Err(run.at("until", "needs the time between rows; give every too")),
     };
     if found.is_empty() {
-        return Err(run.at("times", "needed is at least one time"));
+        return Err(run.at("times", "give at least one time"));
     }
     Ok(found)
 }

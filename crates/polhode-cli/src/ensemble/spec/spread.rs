@@ -108,7 +108,7 @@ impl Sources<'_> {
             .filter_map(|(table, key)| table.filter(|table| table.value(key).is_some()).zip(Some(key)));
         match (said.next(), said.next()) {
             (Some(_), Some((table, key))) => {
-                Err(table.at(key, "the spread of it is given twice; leave one of them out"))
+                Err(table.at(key, "its spread is given twice; leave one of them out"))
             }
             _ => Ok(()),
         }
@@ -163,10 +163,8 @@ impl Sources<'_> {
             self.once(["attitude"; 3])?;
             return match name.as_ref() {
                 "all" => Ok(AttitudeSpread::Uniform),
-                _ => Err(range.at(
-                    "attitude",
-                    "needed is \"all\", or [[low, high], ...] of the rotation vector in rad",
-                )),
+                _ => Err(range
+                    .at("attitude", "expected \"all\", or [[low, high], ...] of the rotation vector in rad")),
             };
         }
         let turn = self.vector("attitude", [0.0; 3])?;

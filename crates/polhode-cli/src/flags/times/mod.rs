@@ -100,7 +100,7 @@ impl TimeArguments {
         let later = given.seconds_since(&date).unwrap_or(f64::INFINITY) + self.start().unwrap_or_default();
         if later != 0.0 {
             warn(&format!(
-                "--epoch: the published start is of {published}; here it is that of --start-time, {later:+.0} s from there"
+                "--epoch: the published start is that at {published}; here it is used at --start-time, {later:+.0} s from it"
             ));
         }
     }

@@ -85,7 +85,7 @@ fn a_step_of_more_than_a_radian_and_ratios_under_a_torque_are_told() {
     assert!(answer.err.contains("[run]: step: '2.5': turns the body by 2.8 rad per step"), "{}", answer.err);
     let ratios = "propagate --body apophis --torque-body 0,0,1e-3 --method rk4 --step 100 --until 1000";
     let answer = polhode(&words(ratios), &scratch.0);
-    assert!(answer.err.contains("apophis: the catalogue has ratios of moments"), "{}", answer.err);
+    assert!(answer.err.contains("apophis: the catalogue has only ratios of its moments"), "{}", answer.err);
 }
 
 #[test]

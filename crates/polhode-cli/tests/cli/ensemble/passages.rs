@@ -81,7 +81,7 @@ fn passages_of_shards_are_those_of_one_run() {
     fs::write(&path, fs::read_to_string(&path).unwrap().replacen("happens", "at start", 1)).unwrap();
     let answer = polhode(&words("gather exact-shards"), &scratch.0);
     assert!(
-        answer.code == 2 && answer.err.contains("passages.csv: it is not as its run wrote it"),
+        answer.code == 2 && answer.err.contains("passages.csv: it has changed since its run wrote it"),
         "{}",
         answer.err
     );
@@ -98,18 +98,18 @@ fn a_member_of_which_nothing_is_known_is_told() {
     scratch.file("spec.toml", spec);
     let answer = polhode(&words("ensemble spec.toml --out out"), &scratch.0);
     assert_eq!(answer.code, 0, "{}", answer.err);
-    let says = "whether the event happens is not known of 1 of 2 members, the first of them member 2: ";
-    assert!(answer.err.contains(says) && answer.out.contains("; not known of 1.\n"), "{}", answer.err);
+    let says = "whether the event happens is not known for 1 of 2 members, the first of them member 2: ";
+    assert!(answer.err.contains(says) && answer.out.contains("; not known for 1.\n"), "{}", answer.err);
 }
 
 #[test]
 fn an_event_that_cannot_be_looked_for_is_refused_before_the_run() {
     let scratch = Scratch::new("ensemble-passages-refused");
     for (keys, says) in [
-        ("first = \"flips\"", "key 'first': it is no event that is known"),
+        ("first = \"flips\"", "key 'first': unknown event"),
         ("first = \"angle(body (0,0,0), space x) < 1deg\"", "a vector with a direction"),
         ("every = 1", "key 'first': missing in [event]"),
-        ("first = \"flip\"\nevery = 0", "key 'every': is no time between looks"),
+        ("first = \"flip\"\nevery = 0", "key 'every': the time between looks must be positive"),
         ("first = \"flip\"\nlast = 3", "no such key in [event]"),
     ] {
         scratch.file("spec.toml", format!("{EXACT}[event]\n{keys}\n"));

@@ -323,7 +323,7 @@ fn a_byte_that_was_changed_in_results_is_found() {
         changed[place] ^= 1;
         fs::write(&path, changed).unwrap();
         let told = refusal(&scratch, line);
-        for part in [&format!("{name}: it is not as its run wrote it"), "run the ensemble again"] {
+        for part in [&format!("{name}: it has changed since its run wrote it"), "run the ensemble again"] {
             assert!(told.contains(part), "'{part}' is not in {told}");
         }
         fs::write(&path, bytes).unwrap();
@@ -413,7 +413,10 @@ fn a_byte_that_was_changed_in_a_shard_is_found_and_nothing_is_written() {
         let place = if name.ends_with("npy") { 128 + 8 * 1000 } else { bytes.len() - 3 };
         changed[place] ^= 1;
         fs::write(&path, changed).unwrap();
-        expect(&[&format!("shards/2-of-2/{name}: it is not as its run wrote it"), "run shard 2/2 again"]);
+        expect(&[
+            &format!("shards/2-of-2/{name}: it has changed since its run wrote it"),
+            "run shard 2/2 again",
+        ]);
         fs::write(&path, bytes).unwrap();
     }
     // arrays of two shards exchanged: 150 and 151 members
@@ -427,7 +430,10 @@ fn a_byte_that_was_changed_in_a_shard_is_found_and_nothing_is_written() {
     fs::write(&arrays[0], &bytes[1]).unwrap();
     fs::write(&arrays[1], &bytes[0]).unwrap();
     let told = refusal(&even, "gather out");
-    assert!(told.contains("shards/1-of-2/attitudes.npy: it is not as its run wrote it: SHA-256 "), "{told}");
+    assert!(
+        told.contains("shards/1-of-2/attitudes.npy: it has changed since its run wrote it: SHA-256 "),
+        "{told}"
+    );
     // a seed that is another
     let mark = one.join("run.toml");
     let record = fs::read_to_string(&mark).unwrap();
@@ -436,7 +442,7 @@ fn a_byte_that_was_changed_in_a_shard_is_found_and_nothing_is_written() {
     // a record without checksums, as of an older version
     let bare = record.split_once("[sha256]").unwrap().0;
     fs::write(&mark, bare).unwrap();
-    expect(&["shards/1-of-2/run.toml: it is not as its run wrote it"]);
+    expect(&["shards/1-of-2/run.toml: it has changed since its run wrote it"]);
     fs::write(&mark, record).unwrap();
     done("gather out", &scratch);
 }
