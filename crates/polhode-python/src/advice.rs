@@ -226,10 +226,13 @@ pub(crate) fn advise(
     }
     match (found.best.whole_time, actual_error, energy_error) {
         (false, None, _) => {
-            warn(py, "the error over the whole time was not seen but extrapolated; check=True runs it")?;
+            warn(py, "the error at the end is extrapolated from a shorter run; check=True runs to the end")?;
         }
         (false, Some(_), Some(_)) => {
-            warn(py, "the energy error was not seen but extrapolated; check=True is of the attitude alone")?;
+            warn(
+                py,
+                "the energy error is extrapolated from a shorter run; check=True measures only the attitude error",
+            )?;
         }
         _ => {}
     }

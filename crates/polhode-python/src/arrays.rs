@@ -40,7 +40,7 @@ impl Numbers {
             Some(array) => array,
             None => as_floats(name, value)?
                 .extract()
-                .map_err(|_| refused(format!("{name}: numpy makes no array of numbers of it")))?,
+                .map_err(|_| refused(format!("{name}: numpy cannot make an array of numbers of it")))?,
         };
         let view = array.as_array();
         let mut values = Vec::new();
@@ -164,7 +164,7 @@ fn check_exact<'py>(
     require: &Bound<'py, PyAny>,
 ) -> PyResult<()> {
     let is_short = || Ok::<_, PyErr>(array.getattr("dtype")?.getattr("itemsize")?.extract::<usize>()? < 8);
-    let unreadable = || refused(format!("{name}: numpy makes no array of numbers of it"));
+    let unreadable = || refused(format!("{name}: numpy cannot make an array of numbers of it"));
     let outside = || refused(format!("{name}: outside the range of a double"));
     match kind {
         "i" if !is_short()? => {
@@ -209,8 +209,8 @@ fn check_exact<'py>(
 /// The refusal of an integer that would be another number, the nearest double, as by nanoseconds since 1970.
 fn no_double(name: &'static str, integer: impl std::fmt::Display, nearest: f64) -> PyErr {
     refused(format!(
-        "{name}: {integer} is no double, and the nearest is {nearest:.0}; subtract a whole number first, as t - t[0] of counts since 1970, or give \
-         floats"
+        "{name}: {integer} has too many digits for a double, the nearest is {nearest:.0}; subtract a whole number first, as t - \
+         t[0] of counts since 1970, or give floats"
     ))
 }
 
@@ -285,7 +285,7 @@ pub(crate) fn unit(name: &'static str, q: Quat<f64>) -> PyResult<UnitQuaternion<
         Ok(q.map(|part| part / size).into())
     } else {
         let parts = q.components();
-        Err(refused(format!("{name}: {parts:?} is no rotation; a quaternion is finite and not zero")))
+        Err(refused(format!("{name}: {parts:?} is not a rotation; a quaternion must be finite and not zero")))
     }
 }
 

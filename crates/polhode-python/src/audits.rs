@@ -169,7 +169,7 @@ pub(crate) fn verdict_on(
     ] {
         if let Some(found) = found.filter(|_| !is_used) {
             return Err(refused(format!(
-                "{name}: '{found}'; it says how {what} is written, and the record has none; leave it out"
+                "{name}: '{found}'; it is for {what}, and the record has none; leave it out"
             )));
         }
     }
@@ -226,8 +226,8 @@ pub(crate) fn verdict_on(
             let axes = sequence.axes();
             if axes[0] == axes[2] {
                 return Err(refused(format!(
-                    "euler: '{text}'; it turns about one axis twice, and roll, pitch and yaw are angles about x, y and z; state a sequence \
-                     of the three, as zyx, or name the columns by columns of read"
+                    "euler: '{text}'; it turns about one axis twice, while roll, pitch and yaw are angles about x, y and z; \
+                     state a sequence of the three, as zyx, or name the columns by columns of read"
                 )));
             }
             if let Some(Attitudes::Angles(angles)) = &mut record.rows.attitude {
@@ -256,13 +256,13 @@ pub(crate) fn verdict_on(
     if record.counts_steps {
         let Some(step) = step_length(&record.rows, body.as_ref().map(|body| &body.body)) else {
             return Err(refused(format!(
-                "{}: counts steps of a length that it does not tell; give the length of a step, s, as time_unit of read",
+                "{}: counts steps of unknown length; give the length of a step, s, as time_unit of read",
                 record.name
             )));
         };
         record.rows.times.iter_mut().for_each(|t| *t *= step);
         notes.push(format!(
-            "the record counts steps; they are taken to be {} s long, as the body turns; time_unit of read gives their length",
+            "the record counts steps; from the turning of the body they are taken to be {} s long; give their length by time_unit of read",
             short(step)
         ));
     }

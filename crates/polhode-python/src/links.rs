@@ -125,7 +125,7 @@ impl Link {
 /// >>> from polhode import diagnose
 /// >>> found = diagnose([[0.75, 0.3125, 0.3125], [0.3125, 0.75, 0.3125], [0.3125, 0.3125, 0.75]])
 /// >>> found.verdict, found.cause
-/// ('invalid', 'the products have the other sign: +int xy dm where I_xy = -int xy dm belongs')
+/// ('invalid', 'the products have the other sign: +int xy dm instead of I_xy = -int xy dm')
 #[pyfunction]
 #[pyo3(signature = (tensor, *, mass = None, center_of_mass = None, extents = None))]
 pub(crate) fn diagnose(

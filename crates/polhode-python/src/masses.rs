@@ -185,8 +185,9 @@ pub(crate) fn mesh(
     let (amount, close) = (amount(mass, density)?, closing(close)?);
     let vertex = |index: f64| -> PyResult<Vector3<f64>> {
         let found = (index.fract() == 0.0 && index >= 0.0).then(|| vertices.get(index as usize)).flatten();
-        let missing =
-            || refused(format!("triangles: {index} is no index of a vertex; there are {}", vertices.len()));
+        let missing = || {
+            refused(format!("triangles: {index} is not the index of a vertex; there are {}", vertices.len()))
+        };
         found.map(|found| Vector3::from(*found)).ok_or_else(missing)
     };
     let all: Vec<[Vector3<f64>; 3]> = corners

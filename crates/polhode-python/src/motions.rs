@@ -226,7 +226,7 @@ impl FreeMotion {
         let mode = match mode {
             "lam" => flow::Mode::LongAxis,
             "sam" => flow::Mode::ShortAxis,
-            _ => return Err(refused(format!("mode: '{mode}' is no mode; write \"lam\" or \"sam\""))),
+            _ => return Err(refused(format!("mode: '{mode}' is unknown; write \"lam\" or \"sam\""))),
         };
         let period = |name: &'static str| periods.get(name).map(|value| scalar(name, value)).transpose();
         let pair = |name, value: Option<&Bound<'_, PyAny>>| {
@@ -247,7 +247,7 @@ impl FreeMotion {
                 let mut given: Vec<&str> = periods.keys().map(String::as_str).collect();
                 given.sort_unstable();
                 return Err(refused(format!(
-                    "periods: '{}'; needed are two of P_phi, P_psi and P_1, s",
+                    "periods: '{}'; give two of P_phi, P_psi and P_1, s",
                     given.join(", ")
                 )));
             }
@@ -278,7 +278,7 @@ impl FreeMotion {
     ) -> PyResult<Vec<Passage>> {
         let (order, inertia) = (Order::of(order)?, through::free("inertia", inertia)?);
         let &[first, second] = through::table(t, attitude, order)?.as_slice() else {
-            return Err(refused("t: two times with two attitudes are wanted; Interpolation takes more"));
+            return Err(refused("t: give two times and two attitudes; Interpolation takes more"));
         };
         let found = aside(t.py(), move |_| flow::FreeMotion::through(&inertia, first, second, turns))?;
         let passages = found.map_err(refused)?.list.into_iter();

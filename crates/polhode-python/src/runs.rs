@@ -89,7 +89,7 @@ pub(crate) fn warn_coarse(py: Python<'_>, step: f64, speed: f64) -> PyResult<()>
     warn(
         py,
         &format!(
-            "step: {}: turns the body by {turn:.1} rad per step; above 1 rad no stepping method is accurate; take a smaller step",
+            "step: {}: turns the body by {turn:.1} rad per step; above 1 rad no stepping method is accurate; use a smaller step",
             short(step)
         ),
     )
@@ -186,7 +186,7 @@ impl Asked<'_> {
             let steps = (t - self.start_time) / h;
             if steps >= MOST_STEPS {
                 return Err(refused(format!(
-                    "step: {h:?} s asks for {steps:.0e} steps, and a run has fewer than {MOST_STEPS:e}; take a larger step"
+                    "step: {h:?} s asks for {steps:.0e} steps, and a run has fewer than {MOST_STEPS:e}; use a larger step"
                 )));
             }
         }

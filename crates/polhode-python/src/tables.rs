@@ -233,7 +233,7 @@ pub(crate) fn trajectories<'py>(
     let has_rates = found.bodies.iter().any(|(_, rows)| rows.rates.is_some());
     if let Some(unit) = options.rate_unit.filter(|_| !has_rates) {
         return Err(refused(format!(
-            "rate_unit: '{unit}'; it says how an angular velocity is written, and none is read; leave it out"
+            "rate_unit: '{unit}'; it is for an angular velocity, and none is read; leave it out"
         )));
     }
     let mut remark = found.remark();

@@ -21,7 +21,7 @@ pub(crate) fn finite(name: &'static str, value: f64) -> PyResult<f64> {
     if value.is_finite() {
         Ok(value)
     } else {
-        Err(refused(format!("{name}: {value} is no finite number of seconds")))
+        Err(refused(format!("{name}: {value} is not a finite number of seconds")))
     }
 }
 
@@ -29,7 +29,9 @@ pub(crate) fn share(value: f64) -> PyResult<f64> {
     if (0.0..1.0).contains(&value) {
         Ok(value)
     } else {
-        Err(refused(format!("skip_rows: {value:?} is no share of the rows; give a number from 0 to below 1")))
+        Err(refused(format!(
+            "skip_rows: {value:?} is not a fraction of the rows; give a number from 0 to below 1"
+        )))
     }
 }
 

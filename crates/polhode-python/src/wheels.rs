@@ -37,7 +37,7 @@ fn vector(name: &'static str, value: &Bound<'_, PyAny>) -> PyResult<Vector3<f64>
 fn rate(value: &Bound<'_, PyAny>) -> PyResult<Vector3<f64>> {
     let omega = vector("omega", value)?;
     match omega.iter().find(|part| !part.is_finite()) {
-        Some(part) => Err(refused(format!("omega: {part} is no finite number of rad/s"))),
+        Some(part) => Err(refused(format!("omega: {part} is not a finite number of rad/s"))),
         None => Ok(omega),
     }
 }

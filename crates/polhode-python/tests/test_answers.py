@@ -53,7 +53,7 @@ def test_a_noisy_record_is_undecided_until_its_noise_is_declared(exact):
     assert undecided.verdict == "undecided"
     # by the keyword, and not by the flag of the command
     said = " ".join(repr(undecided).split())
-    assert "say so: noise " in said and "--" not in said
+    assert "declare it: noise " in said and "--" not in said
     assert polhode.audit(T, exact.attitude, exact.omega + noise, moments=[1, 2, 3], noise=[0, 1.1e-3]).is_right
     # what is said of columns or moments that are not there
     with pytest.raises(PolhodeError, match="has no angular velocity"):
@@ -73,7 +73,7 @@ def test_what_is_said_of_columns_that_a_record_has_not_is_refused(exact):
         ("euler", "zyx", (T, attitude, omega)),
         ("angle_unit", "deg", (T, attitude, omega)),
     ]:
-        with pytest.raises(PolhodeError, match=f"{argument}: '{value}'; it says how .* is written, and the record has none"):
+        with pytest.raises(PolhodeError, match=f"{argument}: '{value}'; it is for .*, and the record has none"):
             polhode.audit(*record, moments=[1, 2, 3], **{argument: value})
 
 
@@ -445,7 +445,7 @@ COUNT = 1_700_000_000_123_456_789
 )
 def test_integers_that_are_no_doubles_are_refused(t):
     first = np.ravel(np.asarray(t, dtype=object))[0]
-    with pytest.raises(PolhodeError, match=f"^t: {first} is no double, and the nearest is {int(float(first))}; subtract"):
+    with pytest.raises(PolhodeError, match=f"^t: {first} has too many digits for a double, the nearest is {int(float(first))}; subtract"):
         polhode.FreeMotion([1, 2, 3], OMEGA).at(t)
 
 

@@ -53,7 +53,7 @@ def test_warnings_are_those_of_the_command():
             polhode.attitude(t, rates, **options)
         return [str(one.message) for one in found]
 
-    noise = "fewer than 5 samples: their noise cannot be found, and sigma is without it; give noise"
+    noise = "fewer than 5 samples, too few to find their noise: sigma does not include it; give noise"
     truncation = "one polynomial goes through all 4 samples"
     four = told(T[:4], RATES[:4], kind="rate", rule="magnus:4,4")
     assert noise in four and any(text.startswith(truncation) for text in four), four
@@ -68,7 +68,7 @@ def test_warnings_are_those_of_the_command():
     twice = np.insert(np.arange(100), 20, 20)
     merged = "1 rows have the time of the row before, the first at 1 s: their rates are averaged"
     assert told(T[twice], RATES[twice], kind="rate") == [merged]
-    with pytest.raises(PolhodeError, match="1 rows have the time of the row before; of averages each one counts"):
+    with pytest.raises(PolhodeError, match="1 rows have the time of the row before; with averages none may be missing or repeated"):
         polhode.attitude(T[twice], RATES[twice], kind="average")
 
 
@@ -103,7 +103,7 @@ def test_orders_of_rules_and_of_quaternions():
 @pytest.mark.parametrize(
     "call, says",
     [
-        (lambda: polhode.attitude(T, RATES, kind="speed"), "kind: 'speed' is no kind of reading"),
+        (lambda: polhode.attitude(T, RATES, kind="speed"), "kind: unknown kind of reading 'speed'"),
         (lambda: polhode.attitude(T, RATES[1:], kind="rate"), r"rates: an array of shape \(1999, 3\)"),
         (lambda: polhode.attitude(T, RATES, kind="rate", rule="euler"), "rule: 'euler'; it must be auto"),
         (lambda: polhode.attitude(T, RATES, kind="rate", rule="magnus:6,7"), "7 samples"),
@@ -114,9 +114,9 @@ def test_orders_of_rules_and_of_quaternions():
         (lambda: polhode.attitude(T, RATES * 100, kind="rate"), "more than half a turn"),
         (lambda: polhode.attitude(T, RATES, kind="rate", bias=-1.0), "the bias of the sensor is -1"),
         (lambda: polhode.attitude(T, RATES, kind="rate", stamps=-1.0), "the error of the stamps of the sensor is -1"),
-        (lambda: polhode.attitude(T, RATES, kind="rate", start=[0, 0, 0, 0]), "start: .* is no rotation"),
+        (lambda: polhode.attitude(T, RATES, kind="rate", start=[0, 0, 0, 0]), "start: .* is not a rotation"),
         (lambda: polhode.attitude(T, RATES, kind="rate", start=[1, 0, 0]), r"start: an array of shape \(3,\)"),
-        (lambda: polhode.attitude(T, RATES, kind="rate", body=[1, 1, 1.9]), "the body contradicts the record"),
+        (lambda: polhode.attitude(T, RATES, kind="rate", body=[1, 1, 1.9]), "the record contradicts the body"),
         (lambda: polhode.attitude(T, RATES, kind="increment", body=[1, 2, 3]), "a flight is fitted to rates"),
         (lambda: polhode.attitude(T, kind="rate"), "rates: missing"),
     ],

@@ -248,8 +248,8 @@ def test_numbers_that_are_none_are_refused_by_their_names():
             call, others = known[name]
             seen.add(name)
             for wrong, says in [
-                (2**53 + 1, "9007199254740993 is no double, and the nearest is 9007199254740992; "),
-                (numpy.int64(2**53 + 1), "9007199254740993 is no double"),
+                (2**53 + 1, "9007199254740993 has too many digits for a double, the nearest is 9007199254740992; "),
+                (numpy.int64(2**53 + 1), "9007199254740993 has too many digits"),
                 (10**400, "outside the range of a double"),
                 (True, "True; it must be a number"),
                 ("1", "'1'; it must be a number"),
@@ -279,7 +279,7 @@ def test_numbers_of_any_kind_that_are_doubles_are_taken():
         (dict(pole=[1, 2, 3]), r"pole: an array of shape \(3,\); it must be of shape \(2,\)"),
         (dict(phases=[True, False]), "phases: an array of bool"),
         (dict(periods={"P_phi": "1h", "P_psi": 1e6}), "P_phi: '1h'; it must be a number"),
-        (dict(periods={"P_phi": 1e5, "P_Psi": 1e6}), "periods: 'P_Psi, P_phi'; needed are two of P_phi, P_psi and P_1"),
+        (dict(periods={"P_phi": 1e5, "P_Psi": 1e6}), "periods: 'P_Psi, P_phi'; give two of P_phi, P_psi and P_1"),
     ]:
         with pytest.raises(polhode.PolhodeError, match=f"^{says}"):
             polhode.FreeMotion.tumbling(**{**dict(inertia=[0.61, 0.965, 1], periods={"P_phi": 1e5, "P_psi": 1e6}, mode="sam"), **wrong})
@@ -287,5 +287,5 @@ def test_numbers_of_any_kind_that_are_doubles_are_taken():
         polhode.read({"t": [0, 1]}, time_unit=[1.0])
     with pytest.raises(polhode.PolhodeError, match="^t: None; it must be a number, or an array of numbers"):
         polhode.FreeMotion([1, 2, 3], [0.4, 1, -0.3]).at(None)
-    with pytest.raises(polhode.PolhodeError, match="^start_time: NaN is no finite number"):
+    with pytest.raises(polhode.PolhodeError, match="^start_time: NaN is not a finite number"):
         polhode.advise([1, 2, 3], [0.4, 1, -0.3], until=1, attitude_error=0.1, start_time=float("nan"))

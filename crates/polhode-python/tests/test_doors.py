@@ -50,7 +50,7 @@ def test_a_phase_error(command):
     found = [drift.shift, drift.twist, drift.attitude_error(100)]
     np.testing.assert_allclose(found, [told[0][key] for key in ("shift_rate", "twist_rate", "predicted_error")], rtol=1e-9)
     for ask in (drift.departure, drift.rounding):
-        with pytest.raises(polhode.PolhodeError, match="t: NaN is no finite number of seconds"):
+        with pytest.raises(polhode.PolhodeError, match="t: NaN is not a finite number of seconds"):
             ask(float("nan"))
     assert drift.doubt < 1e-9 and 0 < drift.rounding(100) < 1e-9 * drift.attitude_error(100)
     exact = polhode.FreeMotion([1, 2, 3], [0.4, 1, -0.3]).at([100])
