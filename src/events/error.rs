@@ -13,7 +13,7 @@ pub enum EventError {
     #[error(transparent)]
     Time(#[from] TimeError),
     /// The end does not come after the beginning.
-    #[error("events are looked for from {} s to {} s; the end must come after the beginning", Shown(*from), Shown(*to))]
+    #[error("events are searched for from {} s to {} s; the end must come after the beginning", Shown(*from), Shown(*to))]
     NotAscending {
         /// The beginning, s.
         from: f64,

@@ -57,7 +57,7 @@ pub enum RunError {
     },
     /// The state is finite in the solver frame, and in the units of the body time, momentum or energy are not.
     #[error(
-        "after {steps} steps, t = {} s, time, momentum or energy leave the range of a double in the units of the body; take a \
+        "after {steps} steps, t = {} s, time, momentum or energy leave the range of a double in the units of the body; use a \
          smaller step, or change the units", Shown(*time)
     )]
     OutOfRange {
