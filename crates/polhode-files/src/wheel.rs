@@ -14,7 +14,8 @@ use crate::toml_file::Section;
 const KEYS: [&str; 8] = ["axis", "inertia", "speed", "speed_unit", "free", "torque", "from", "until"];
 
 /// What a text has to look like.
-const FORM: &str = "write it as ax,ay,az,I@3000rpm, with ,free or ,torque=T[,from=t][,until=t] behind it";
+const FORM: &str =
+    "write it as ax,ay,az,I@3000rpm, then ,free or ,torque=T[,from=t][,until=t] if the speed is not held";
 
 /// From `ax,ay,az,I@SPEED[,free|,torque=T[,from=t][,until=t]]`; a speed without unit is in rad/s.
 ///

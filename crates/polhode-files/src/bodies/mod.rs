@@ -114,7 +114,7 @@ fn chosen<'t>(flag: &str, text: &'t str) -> Result<Option<Chosen<'t>>, Error> {
                 flag,
                 text,
                 &format!("has {} bodies: {}", bodies.len(), visible(&names.join(", "))),
-                "name one of them behind a colon, as FILE:NAME",
+                "give the name of one after a colon, as FILE:NAME",
             ),
         });
     };
@@ -179,7 +179,7 @@ fn links(path: &Path, kind: &str, meant: Option<&str>) -> Result<Vec<Named>, Err
     match (defect, meant) {
         (Some(defect), Some(_)) => Err(Error::Input(defect.clone())),
         (Some(defect), None) => {
-            let remedy = "mend it, or name the body that is meant behind a colon, as FILE:NAME";
+            let remedy = "mend it, or give the name of the body after a colon, as FILE:NAME";
             Err(Error::Input(format!("{defect}; {remedy}")))
         }
         (None, _) => Ok(bodies),

@@ -198,8 +198,8 @@ fn refusal(path: &Path, surface: &Surface, error: &MeshError, how: Option<Closin
         let [x, y, z] = [longest.center.x, longest.center.y, longest.center.z].map(three_digits).map(rounded);
         let extent = surface.extents().into_iter().fold(0.0, f64::max);
         text += &format!(
-            "; rims: {}, the longest of {} edges, {:.3} times the size of the mesh, about ({x}, {y}, {z}); close them by --close fan, \
-             take the convex hull by --close hull, or give walls a thickness by --shell",
+            "; rims: {}, the longest of {} edges, {:.3} times the size of the mesh, about ({x}, {y}, {z}); close them by \
+             --close fan, use the convex hull by --close hull, or give walls a thickness by --shell",
             rims.len(),
             longest.edges,
             longest.length / extent

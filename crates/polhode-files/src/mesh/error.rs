@@ -74,7 +74,7 @@ pub enum MeshFileError {
         line: u64,
     },
     /// A face names a vertex that is not there.
-    #[error("line {line}: face names vertex {index}, but {vertices} vertices stand above it")]
+    #[error("line {line}: face names vertex {index}, but only {vertices} vertices are above it")]
     Index {
         /// Number of the line.
         line: u64,

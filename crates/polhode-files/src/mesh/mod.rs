@@ -38,7 +38,7 @@ pub fn surface(path: &Path) -> Result<Surface, Error> {
         _ => Err(Error::input(
             "mesh",
             &path.display().to_string(),
-            "the ending tells the format, and this one is unknown",
+            "the format is told by the ending, and this one is unknown",
             "name a file that ends in .stl, .obj or .ply",
         )),
     }

@@ -31,7 +31,7 @@ impl Inputs {
         let speed = match (wheel, column) {
             (None, Some(place)) => {
                 let unused = Rule::Other("the column is not used".into());
-                let remedy = "--wheel nx,ny,nz,I says which momentum the speed stands for";
+                let remedy = "give --wheel nx,ny,nz,I to turn the speed into a momentum";
                 remarks.push(table.refused_column(place, unused).with_remedy(remedy).to_string());
                 None
             }

@@ -183,7 +183,7 @@ fn rates(table: &Table) -> Result<[usize; 3], TableError> {
         [body] => body.rates.as_ref(),
         bodies => {
             return other(
-                format!("{} bodies, and a record is of one", bodies.len()),
+                format!("{} bodies, and a record must have one", bodies.len()),
                 "name its columns by --columns",
             );
         }

@@ -156,7 +156,7 @@ fn unstated(link: &Element) -> Result<Option<Given>, String> {
         |part: &&Element| ["mass", "inertia"].iter().any(|name| part.tag.eq_ignore_ascii_case(name));
     let inside = link.children.iter().filter(|child| !APART.contains(&child.tag.as_str()));
     match link.children.iter().chain(inside.flat_map(|child| &child.children)).find(is_stated) {
-        Some(part) => Err(part.error("stands outside of the <inertial> of the link, and is not read there")),
+        Some(part) => Err(part.error("is outside of the <inertial> of the link, where it is not read")),
         None => Ok(None),
     }
 }
@@ -234,7 +234,7 @@ mod tests {
         let stated = format!("<inertial>{TENSOR}</inertial>");
         let turned = format!("<inertial><origin xyz='0 0 1' quat_xyzw='0 0 1 0'/>{TENSOR}</inertial>");
         let plain = "<inertial pos='0 0 0' mass='1' diaginertia='1 1 1'/>";
-        let outside = "<mass>: stands outside of the <inertial>";
+        let outside = "<mass>: is outside of the <inertial>";
         for (language, text, says) in [
             (Language::Urdf, urdf(&stated), ""),
             (Language::Urdf, urdf(&other(&stated)), outside),

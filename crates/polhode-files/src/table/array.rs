@@ -103,7 +103,9 @@ impl<R: BufRead> BufRead for ArrayText<R> {
                 self.print_row()?;
             } else if !self.inner.fill_buf()?.is_empty() {
                 let rows = self.head.rows;
-                return Err(refused(format!("bytes are behind the last of its {rows} rows; save one array")));
+                return Err(refused(format!(
+                    "bytes follow the last of its {rows} rows; save a single array"
+                )));
             }
         }
         Ok(&self.text[self.at..])
@@ -158,7 +160,7 @@ impl Head {
         };
         if !value("fortran_order")?.starts_with("False") {
             return Err(refused(
-                "its columns stand one after the other; save it with numpy.ascontiguousarray".into(),
+                "it is stored by columns; save it by rows, with numpy.ascontiguousarray".into(),
             ));
         }
         let shape = tuple(value("shape")?)?;
@@ -249,7 +251,7 @@ mod tests {
         assert_eq!(read(&one).unwrap(), "0.0\n0.0\n");
         for more in [&one[..], b"\n"] {
             let message = read(&[&one[..], more].concat()).unwrap_err().to_string();
-            assert!(message.contains("behind the last of its 2 rows"), "{message}");
+            assert!(message.contains("follow the last of its 2 rows"), "{message}");
         }
     }
 

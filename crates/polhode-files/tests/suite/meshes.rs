@@ -237,11 +237,11 @@ fn broken_files_name_the_byte_or_the_line() {
     let obj = |text: String| from_obj(text.as_bytes()).unwrap_err().to_string();
     assert_eq!(
         obj(OBJ_CUBE.replace("f 3 8 7", "f 3 8 9")),
-        "line 18: face names vertex 9, but 8 vertices stand above it"
+        "line 18: face names vertex 9, but only 8 vertices are above it"
     );
     assert_eq!(
         obj(OBJ_CUBE.replace("f 3 8 7", "f 3 0 7")),
-        "line 18: face names vertex 0, but 8 vertices stand above it"
+        "line 18: face names vertex 0, but only 8 vertices are above it"
     );
     assert_eq!(
         obj(OBJ_CUBE.replace("v 1 1 0", "v 1 1 O")),

@@ -117,7 +117,7 @@ pub fn unwritable(flag: &str, path: &Path, reason: &io::Error) -> Error {
     let (cause, remedy) = match reason.kind() {
         ErrorKind::NotFound => ("the folder does not exist", "make it first"),
         ErrorKind::NotADirectory | ErrorKind::AlreadyExists => {
-            ("a file stands where a folder is needed", "name another place")
+            ("there is a file where a folder is needed", "name another place")
         }
         ErrorKind::IsADirectory => ("it is a folder", "name a file in it"),
         ErrorKind::PermissionDenied => (
@@ -218,7 +218,7 @@ mod tests {
         fs::write(&file, "kept").unwrap();
         for (path, remedy) in [
             (scratch.path().to_path_buf(), "it is a folder; name a file in it"),
-            (file.join("rows.csv"), "a file stands where a folder is needed"),
+            (file.join("rows.csv"), "there is a file where a folder is needed"),
             (scratch.path().join("no/rows.csv"), "the folder does not exist; make it first"),
             (scratch.path().join("x".repeat(256)), "name a shorter one"),
         ] {
