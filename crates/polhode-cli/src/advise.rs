@@ -127,7 +127,7 @@ impl Advise {
         emit(&text, self.out.as_deref())?;
         if let Some(time) = advice.jump {
             warn(&format!(
-                "the torque jumps, first at t = {} s: steps and tolerances hold for this start and time alone",
+                "the torque jumps, first at t = {} s: steps and tolerances hold only for this start and time",
                 short(self.start_time + time)
             ));
         }
@@ -164,7 +164,7 @@ impl Advise {
                 .digits(2),
             column("predicted_cost", "s", "processor time on this machine").heading("time").digits(2),
             column("times_longer", "", "that time over the quickest").heading("longer").digits(2),
-            column("whole_time", "", "whether the runs behind the prediction went as far as T").hidden(),
+            column("whole_time", "", "whether the runs of the prediction went as far as T").hidden(),
         ];
         if self.check {
             columns.push(

@@ -17,7 +17,7 @@ pub(crate) fn check_files(paths: &[PathBuf], times: u64) -> Result<(), Error> {
             &first.display().to_string(),
             "",
             &format!("it takes about {} of memory, and {} are free", shown(needed), shown(free)),
-            "take a part of it, or a machine with more",
+            "use a part of it, or a machine with more",
         )),
         _ => Ok(()),
     }

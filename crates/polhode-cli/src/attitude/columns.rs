@@ -39,7 +39,8 @@ impl Attitude {
         }
         if self.body.is_some() {
             columns.push(
-                Column::new("integrated", "rad", "angle to the attitude by the readings alone").digits(2),
+                Column::new("integrated", "rad", "angle to the attitude that the readings alone give")
+                    .digits(2),
             );
         }
         Table::new("attitude", "Attitudes from the readings of a gyroscope.", columns)

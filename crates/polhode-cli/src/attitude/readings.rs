@@ -173,7 +173,7 @@ impl Readings {
 
     /// Every increment and every average counts: none may be missing or merged.
     fn check(&self) -> Result<(), Error> {
-        let remedy = "correct the record; rates alone may miss a row";
+        let remedy = "correct the record; only rates may miss a row";
         let lost = self.found.lost(self.kind, self.parts.skipped().0);
         lost.map_or(Ok(()), |rule| Err(Error::input(self.name(), "", &rule, remedy)))
     }

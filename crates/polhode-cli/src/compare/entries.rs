@@ -101,7 +101,7 @@ impl Compare {
                     format!("leave it out, or use one of {}", adaptive()),
                 ),
                 false => (
-                    "each method that chooses its steps has a tolerance behind its name",
+                    "each method that chooses its steps has a tolerance in its name",
                     "leave it out, or name a method without one".to_string(),
                 ),
             };
@@ -124,7 +124,7 @@ impl Compare {
                     "no whole number of these steps leads to --until {until}; the nearest time is {}",
                     short(nearest)
                 ),
-                &format!("take {divided}, or --until {}", short(nearest)),
+                &format!("use {divided}, or --until {}", short(nearest)),
             ),
             error => Error::Input(format!("--steps: '{value}': {error}")),
         })

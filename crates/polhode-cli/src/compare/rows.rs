@@ -85,7 +85,7 @@ impl Compare {
         if let Some(angle) = found.elsewhere {
             warn(&format!(
                 "{}: its first attitude differs by {angle:.2} rad from the true motion: another start, another body or another \
-                 convention; `polhode audit` tells more",
+                 convention; see `polhode audit`",
                 trajectory.name
             ));
         }
@@ -93,7 +93,7 @@ impl Compare {
             set("status", "rates contradict".into());
             warn(&format!(
                 "{}: its angular velocities differ from the true motion by {share:.2} of their size (root mean square), its \
-                 attitudes by at most {:.1e} rad: rates and attitudes contradict each other; `polhode audit` tells more",
+                 attitudes by at most {:.1e} rad: rates and attitudes contradict each other; see `polhode audit`",
                 trajectory.name, found.largest
             ));
         }

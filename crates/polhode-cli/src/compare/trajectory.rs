@@ -134,7 +134,7 @@ impl Trajectory {
         if is_of_another_body {
             return refused(
                 "its rows are those of a body with other moments or other axes",
-                "name its body; `polhode audit` tells more",
+                "name its body; see `polhode audit` for more",
             );
         }
         let momenta = columns.momentum.is_some().then(|| "its angular momenta are not compared".to_owned());

@@ -66,7 +66,7 @@ impl Gather {
                 "gather",
                 &place,
                 &rule,
-                "give fewer --threads, or take a machine with more",
+                "give fewer --threads, or use a machine with more",
             ));
         }
         // nothing is written before every byte of every shard has been looked at

@@ -232,7 +232,7 @@ impl Ensemble {
         let identity = Identity::of(spec);
         if shard.count > spec.members {
             let rule = format!("more shards than the {} members", spec.members);
-            return Err(Error::input("--shard", &shard.to_string(), &rule, "take fewer shards"));
+            return Err(Error::input("--shard", &shard.to_string(), &rule, "use fewer shards"));
         }
         for other in folder::finished(&self.out)? {
             let foreign = |rule: &str| {
@@ -304,7 +304,7 @@ impl Ensemble {
                 "on the disk of --out",
                 arrays,
                 free,
-                "take fewer members or times, or leave omegas out of [output] arrays",
+                "use fewer members or times, or leave omegas out of [output] arrays",
             ),
             None => Ok(()),
         }

@@ -86,7 +86,7 @@ pub(crate) fn check_size(name: &str) -> Result<(), Error> {
 /// Says which density the mesh of a `file` has.
 pub(crate) fn note_density(file: &str) {
     let file = visible(file);
-    tell("note", &format!("{file}: density 1 kg/m^3 is taken, as a mesh file tells no mass"));
+    tell("note", &format!("{file}: the density is taken as 1 kg/m^3, as a mesh file has no mass"));
 }
 
 /// The body that `--body` names: of the catalogue, or of a file.

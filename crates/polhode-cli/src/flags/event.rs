@@ -44,7 +44,7 @@ pub(crate) fn event(text: &str) -> Result<TypedEvent, String> {
         _ => match text.strip_prefix("nearest").and_then(|rest| inside(rest)) {
             Some((components, "")) => {
                 let target = turn(quaternion(components)?);
-                Kind::Nearest(target.ok_or("the quaternion is zero, which is no attitude")?)
+                Kind::Nearest(target.ok_or("the quaternion is zero, which is not an attitude")?)
             }
             _ => return Err(format!("unknown event; {FORMS}")),
         },
@@ -180,7 +180,7 @@ mod tests {
             ("flips", "unknown event"),
             ("nearest(1,0,0,0) now", "unknown event"),
             ("nearest(1,0,0)", "4"),
-            ("nearest(0,0,0,0)", "has no direction"),
+            ("nearest(0,0,0,0)", "not a rotation"),
             ("angle(body z) < 1deg", "needs two axes"),
             ("angle(body z, body x) < 1deg", "needs two axes"),
             ("angle(body w, space x) < 1deg", "'w' is not an axis"),

@@ -12,7 +12,7 @@ use polhode_files::text::visible;
 use super::start::{angle_unit, with_unit};
 
 /// Why a plane alone is refused.
-pub(crate) const NO_ORBIT: &str = "there is no orbit to turn";
+pub(crate) const NO_ORBIT: &str = "there is no orbit";
 
 /// What acts on the body; several forces add.
 #[derive(Args, Clone, Debug)]

@@ -30,7 +30,7 @@ impl TableArguments {
             return Ok(());
         }
         Err(Error::Input(format!(
-            "--columns, --time-unit and --sample-rate say how a file is read; give {naming}, or leave them out"
+            "--columns, --time-unit and --sample-rate are for files; give {naming}, or leave them out"
         )))
     }
 

@@ -210,7 +210,7 @@ impl Inertia {
     fn form(&self) -> Result<Form, Error> {
         let form = Form::of(self.format, self.out.as_deref())?;
         if self.about.is_some() && !form.is_report() {
-            let rule = "this format states the tensor about the centre of mass alone";
+            let rule = "this format has the tensor only about the centre of mass";
             return Err(Error::input("--about", "", rule, "leave it out, or write a table, csv or json"));
         }
         Ok(form)

@@ -123,7 +123,7 @@ fn is_formula(text: &str) -> bool {
 fn remark_on_formulas(bodies: &[Examined]) -> Option<String> {
     let name = bodies.iter().map(|body| &body.given.name).find(|name| is_formula(name))?;
     Some(format!(
-        "name '{}': a spreadsheet would run it as a formula; texts that begin with =, +, -, @ or a tab stand with an apostrophe before them in the CSV, and as they are in --format json",
+        "name '{}': a spreadsheet would run it as a formula; texts that begin with =, +, -, @ or a tab get an apostrophe before them in the CSV, and are unchanged with --format json",
         visible(name)
     ))
 }

@@ -76,7 +76,7 @@ pub(crate) fn unknown(flag: &str, error: UnknownMethod) -> Error {
             Error::input(flag, &name, "the exact motion takes no steps", "name a method of `polhode methods`")
         }
         UnknownMethod::Name { name } if name == "dissipating" => {
-            Error::input(flag, &name, "has no loss", "write it behind the name, as in dissipating:1e-3")
+            Error::input(flag, &name, "has no loss", "write it after the name, as in dissipating:1e-3")
         }
         UnknownMethod::Name { name } if name.starts_with("dissipating:") => {
             let rule = "is for a body with inner friction, and here the body is rigid";

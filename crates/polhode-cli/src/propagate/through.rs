@@ -71,7 +71,7 @@ impl Propagate {
         rows.finish()?;
         tell(
             "note",
-            &format!("spherical linear interpolation is off by up to {worst:.1e} rad at these times"),
+            &format!("at these times spherical linear interpolation differs by up to {worst:.1e} rad"),
         );
         let jump = between.largest_jump();
         let told = format!(

@@ -67,7 +67,7 @@ impl Against {
             Ok(_) if step.is_some() => Ok(Against::Method { typed, name: name.into(), step }),
             Ok(_) => {
                 let rule = "missing: the step of the method, s";
-                Err(Error::input("--against", text, rule, &format!("write it behind a colon, as {text}:0.1")))
+                Err(Error::input("--against", text, rule, &format!("write it after a colon, as {text}:0.1")))
             }
             Err(_) if text.contains(['/', '.']) && step.is_none() => {
                 let rule = "no such file, and no method with its step";

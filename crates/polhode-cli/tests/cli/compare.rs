@@ -392,12 +392,12 @@ fn what_cannot_be_compared_is_refused_with_a_remedy() {
     );
     refused(&line("--methods rk4"), &["--steps: missing: rk4 needs steps", "--steps h1,h2"]);
     refused(&line("--methods rk4,rkk4 --steps 1"), &["--methods: 'rkk4'", "did you mean 'rk4'?"]);
-    refused(&line("--methods exact,rk4 --steps 1"), &["--methods: 'exact'", "compared with", "exact-step"]);
+    refused(&line("--methods exact,rk4 --steps 1"), &["--methods: 'exact'", "the reference", "exact-step"]);
     refused(&line("--methods kick-drift --steps 1 --drag 0.1"), &["--methods:", "cannot take drag", "rk4"]);
     refused(&line("--methods rk4 --steps 1 --tolerances 1e-3"), &["--tolerances: '1e-3'", "dop853"]);
     refused(&line("--methods dop853 --tolerances 1"), &["--tolerances:", "1e-15", "1e-3"]);
     let twice = line("--methods dop853:1e-8 --tolerances 1e-6");
-    refused(&twice, &["--tolerances: '1e-6'", "a tolerance behind its name"]);
+    refused(&twice, &["--tolerances: '1e-6'", "a tolerance in its name"]);
     refused(&line("--methods dop853,tsit5 --steps 1,2"), &["--steps: '1,2'", "chooses its steps"]);
     refused(&line("--methods rk4 --steps 1 --time-unit ms"), &["--time-unit", "give --trajectory"]);
     refused(&line("--methods rk4 --steps 0"), &["--steps", "item 1", "not positive"]);

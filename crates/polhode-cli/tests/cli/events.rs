@@ -141,7 +141,7 @@ fn events_before_a_run_diverges_are_rows() {
     assert_eq!((answer.code, answer.out.lines().count()), (1, 2), "{answer:?}");
     let row = cells(answer.out.lines().last().unwrap());
     assert!(row[0] == "rate > 10rad/s" && number(&row[1]) == 0.0, "{row:?}");
-    for part in ["error: --method explicit-euler: ", " steps, t = ", "take a smaller step"] {
+    for part in ["error: --method explicit-euler: ", " steps, t = ", "use a smaller step"] {
         assert!(answer.err.contains(part), "{}", answer.err);
     }
     let folder = Scratch::new("events-so-far");

@@ -340,11 +340,11 @@ fn a_torque_needs_the_mass_of_a_mesh() {
     let mesh = scratch.file("corner.obj", corner);
     let record = written(&scratch, "poses.csv", "t,q", "t,q_w,q_x,q_y,q_z");
     let line = "simulate --omega 1,9,2 --until 1 --every 0.1";
-    let says = ["--body", "a mesh file tells no mass"];
+    let says = ["--body", "a mesh file has no mass"];
     for flags in ["--torque 0.1,0,0", "--known-torque 0.1,0,0", "--wheel-momentum 0,0,0.1"] {
         refused(&format!("{line} --body {mesh} {flags}"), &says);
         let answer = run(&format!("{line} --body racket {flags}"));
-        assert!(answer.code == 0 && answer.err.contains("ratios of moments"), "{flags}: {answer:?}");
+        assert!(answer.code == 0 && answer.err.contains("ratios of its moments"), "{flags}: {answer:?}");
     }
     refused(&format!("audit {record} --body {mesh} --torque-body 0.1,0,0"), &says);
     let wheel = "--wheel 0,0,1,1e-3@100";

@@ -240,7 +240,7 @@ fn shapes_come_from_meshes_parts_links_and_else_from_the_inertia() {
     };
     // about its centre, wherever the mesh lies, with the moments of a box of 4 x 2 x 1
     let (page, answer) = shown(&scratch, &format!("--body box.obj {spin}"));
-    assert_eq!(answer.err, "note: box.obj: density 1 kg/m^3 is taken, as a mesh file tells no mass\n");
+    assert_eq!(answer.err, "note: box.obj: the density is taken as 1 kg/m^3, as a mesh file has no mass\n");
     near(extents(&page), [1.0, 0.5, 0.25], "mesh");
     assert!(page.notes().contains("Drawn: box.obj"));
     let semi: Vec<f64> = page.scene["ellipsoid"]["semi_axes"]
@@ -389,7 +389,7 @@ fn what_cannot_be_shown_is_refused_with_what_can() {
         &["--against: 'rk4:9'", "longer than the motion"],
     );
     refused(&with("--until 5 --against rk4:-1 --out a.html"), &["--against: 'rk4:-1'"]);
-    refused(&with("--until 5 --against exact:1 --out a.html"), &["'exact:1'", "compared with"]);
+    refused(&with("--until 5 --against exact:1 --out a.html"), &["'exact:1'", "the reference"]);
     refused(&with("--until 1 --against rk4:1e-13 --out a.html"), &["--against: '1e-13'", "1e13 steps"]);
     let four = "--against rk4:1 --against rk4:0.5 --against rk4:0.2 --against rk4:0.1";
     refused(&with(&format!("--until 5 {four} --out a.html")), &["--against: given 4 times", "at most 3"]);
@@ -409,7 +409,7 @@ fn what_cannot_be_shown_is_refused_with_what_can() {
     scratch.file("box.obj", BOX_OBJ);
     let line = "show --body box.obj --omega 1,2,3 --drag 1 --out a.html";
     let answer = polhode(&words(line), &scratch.0);
-    assert!(answer.code == 2 && answer.err.contains("a mesh file tells no mass"), "{}", answer.err);
+    assert!(answer.code == 2 && answer.err.contains("a mesh file has no mass"), "{}", answer.err);
 }
 
 #[test]

@@ -28,7 +28,7 @@ fn rows_between_attitudes_are_those_of_the_motion_itself() {
         }
     }
     let worst = found.iter().map(|row| row[8]).fold(0.0, f64::max);
-    assert!(worst > 0.1 && answer.err.contains("spherical linear interpolation is off by up to"), "{worst}");
+    assert!(worst > 0.1 && answer.err.contains("spherical linear interpolation differs by up to"), "{worst}");
 }
 
 #[test]

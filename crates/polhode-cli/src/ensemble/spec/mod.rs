@@ -152,7 +152,7 @@ impl Spec {
             None => {
                 let source = source(&top, &spread, &nominal)?;
                 plan.check_nominal(&run, &nominal)?;
-                let missing = || run.at("members", "missing; say how many are drawn");
+                let missing = || run.at("members", "missing; give how many are drawn");
                 (source, members.ok_or_else(missing)?)
             }
         };

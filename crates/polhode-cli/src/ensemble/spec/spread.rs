@@ -61,8 +61,9 @@ pub(super) fn population(spread: &Section<'_>, nominal: &Nominal) -> Result<Popu
     {
         let others = spread.keys.len() + covariance.keys.len();
         if others > 2 {
-            return Err(covariance
-                .at("joint", "says everything about the spread; leave the other keys of [spread] out"));
+            return Err(
+                covariance.at("joint", "contains the whole spread; leave the other keys of [spread] out")
+            );
         }
         let Units { rate, angle } = nominal.units;
         let unit = |k: usize| {

@@ -129,12 +129,12 @@ fn a_torque_or_a_wheel_on_a_mesh_is_refused() {
     ] {
         scratch.file("spec.toml", mesh.replace(from, to));
         let told = refusal(&scratch, "ensemble spec.toml --out out");
-        let says = "error: spec.toml:2: key 'body': 'corner.obj': a mesh file tells no mass, and here";
+        let says = "error: spec.toml:2: key 'body': 'corner.obj': a mesh file has no mass, and here";
         assert!(told.contains(says), "{told}");
     }
     scratch.file("spec.toml", mesh);
     let answer = polhode(&words("ensemble spec.toml --out out"), &scratch.0);
-    let note = "note: corner.obj: density 1 kg/m^3 is taken, as a mesh file tells no mass\n";
+    let note = "note: corner.obj: the density is taken as 1 kg/m^3, as a mesh file has no mass\n";
     assert_eq!((answer.code, answer.err.as_str()), (0, note));
 }
 
