@@ -220,7 +220,7 @@ pub(crate) fn advise(
         warn(
             py,
             &format!(
-                "the torque jumps, first at t = {first} s: steps and tolerances hold for this start and time alone"
+                "the torque jumps, first at t = {first} s: steps and tolerances hold only for this start and time"
             ),
         )?;
     }

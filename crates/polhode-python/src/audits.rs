@@ -335,7 +335,7 @@ impl Given {
         let is_rotation = attitude.map(|attitude| attitude.hasattr("as_quat")).transpose()?;
         if let (Some(form), None | Some(true)) = (form, is_rotation) {
             return Err(refused(format!(
-                "form: '{form}'; it says what the numbers of an attitude are, and there are none; leave it out"
+                "form: '{form}'; it is the form of attitudes, and there are none; leave it out"
             )));
         }
         let mut claims = Convention::default();

@@ -197,12 +197,12 @@ pub(crate) fn free(name: &'static str, value: &Bound<'_, PyAny>) -> PyResult<Ine
 /// Refuses a body that forces act on.
 pub(crate) fn unforced(name: &'static str, body: &Body) -> PyResult<()> {
     if !body.body.wheels().is_empty() {
-        return Err(refused(format!("{name}: the body carries wheels; take GyrostatMotion, or run")));
+        return Err(refused(format!("{name}: the body carries wheels; use GyrostatMotion, or run")));
     }
     match body.body.forces().first() {
         None => Ok(()),
         Some(force) => Err(refused(format!(
-            "{name}: {} acts on the body; a free motion has no forces; take LagrangeTop, or run",
+            "{name}: {} acts on the body; a free motion has no forces; use LagrangeTop, or run",
             force.name()
         ))),
     }

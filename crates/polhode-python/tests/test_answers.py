@@ -133,8 +133,8 @@ def test_what_cannot_be_audited_is_refused(exact):
         (lambda: polhode.audit(T, attitude, omega, moments=[1, 2, 3], body="phone"), "give one of them"),
         (lambda: polhode.audit(T, attitude, omega, tolerance=0), "tolerance"),
         (lambda: polhode.audit(T, attitude, omega, order="zyxw"), "order: 'zyxw'; it must be"),
-        (lambda: polhode.audit(T, None, omega, form="euler"), "form: 'euler'; it says what the numbers of an attitude are, and there are none"),
-        (lambda: polhode.audit(T, Turns(), omega, form="matrix"), "form: 'matrix'; it says what the numbers"),
+        (lambda: polhode.audit(T, None, omega, form="euler"), "form: 'euler'; it is the form of attitudes, and there are none"),
+        (lambda: polhode.audit(T, Turns(), omega, form="matrix"), "form: 'matrix'; it is the form of attitudes"),
     ]:
         with pytest.raises(PolhodeError, match=words):
             call()

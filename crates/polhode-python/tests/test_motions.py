@@ -164,7 +164,7 @@ def test_what_has_no_size_is_not_moved_by_what_has_one(tmp_path):
     read = Body(mesh, [gradient])
     path.unlink()
     for acting in ({"forces": [own]}, {"forces": [gradient, brake.during([[0, 1]])]}, {"wheels": [polhode.Wheel([0, 0, 1], 1e-3, 1)]}):
-        with pytest.raises(PolhodeError, match="tetrahedron.obj': a mesh file tells no mass"):
+        with pytest.raises(PolhodeError, match="tetrahedron.obj': a mesh file has no mass"):
             Body(read, **acting)
     with pytest.warns(PolhodeWarning, match="toutatis: the catalogue has only ratios of its moments"):
         Body("toutatis", [brake])
