@@ -116,7 +116,7 @@ impl Compare {
         let failure = if found.contradiction.is_some() {
             Some("rates contradict the attitudes beside them")
         } else if found.ending == Ending::Held && found.at == Some(0.0) {
-            Some("no row behind the start is compared")
+            Some("no row after the start is compared")
         } else {
             None
         };

@@ -345,13 +345,13 @@ fn rows_beside_the_known_motion_are_not_judged() {
     let row = &rows(&answer.out)[1];
     assert_eq!((cell(row, "status"), number(row, "attitude_time")), ("ok", 0.0));
     assert!(answer.err.contains("its last row is at t = 0 s: its errors are those at that time"), "{}", answer.err);
-    let failure = format!("error: no row behind the start is compared: {file}");
+    let failure = format!("error: no row after the start is compared: {file}");
     assert!(answer.code == 1 && answer.err.contains(&failure), "{}", answer.err);
     // one row, which is the start
     let alone = scratch.file("alone.csv", "t,q_w,q_x,q_y,q_z\n0,1,0,0,0\n");
     let answer = run(&format!("{TEXTBOOK} {BESIDE} {alone}"));
     assert_eq!(answer.code, 1, "{}", answer.err);
-    assert!(answer.err.contains("no row behind the start is compared: "), "{}", answer.err);
+    assert!(answer.err.contains("no row after the start is compared: "), "{}", answer.err);
 }
 
 #[test]
