@@ -114,7 +114,7 @@ impl Compare {
             set("attitude_time", found.at.map(|at| self.start_time + at).into());
         }
         let failure = if found.contradiction.is_some() {
-            Some("rates contradict the attitudes beside them")
+            Some("rates and attitudes contradict each other")
         } else if found.ending == Ending::Held && found.at == Some(0.0) {
             Some("no row after the start is compared")
         } else {

@@ -344,7 +344,11 @@ fn rows_beside_the_known_motion_are_not_judged() {
     let answer = run(&format!("{top} {file}"));
     let row = &rows(&answer.out)[1];
     assert_eq!((cell(row, "status"), number(row, "attitude_time")), ("ok", 0.0));
-    assert!(answer.err.contains("its last row is at t = 0 s: its errors are those at that time"), "{}", answer.err);
+    assert!(
+        answer.err.contains("its last row is at t = 0 s: its errors are those at that time"),
+        "{}",
+        answer.err
+    );
     let failure = format!("error: no row after the start is compared: {file}");
     assert!(answer.code == 1 && answer.err.contains(&failure), "{}", answer.err);
     // one row, which is the start
