@@ -144,7 +144,7 @@ fn what_cannot_be_met_is_refused_with_the_reason() {
     coarse.energy_error = Some(1e-15);
     let error = refused(&coarse);
     assert!(matches!(error, AdviseError::EnergyUnreached { error: off, .. } if off > 1e-6), "{error}");
-    let says = "no method meets a relative energy error of 1.0e-15; the nearest is explicit-euler with ";
+    let says = "no method meets a relative energy error of 1.0e-15 until t = 1000 s; the best is explicit-euler with ";
     assert!(error.to_string().starts_with(says), "{error}");
     coarse.energy_error = Some(2e-16);
     assert!(matches!(refused(&coarse), AdviseError::EnergyBelowRounding { demand } if demand == 2e-16));

@@ -571,10 +571,10 @@ fn tables_of_orbits_are_refused_by_their_law() {
         Orbit::table(gm, times, places).unwrap_err().to_string()
     };
     assert!(refused(0.0, &times, &places).contains("must be positive"));
-    assert!(refused(1.0, &times[..7], &places[..7]).contains("needs 8 of each"));
-    assert!(refused(1.0, &times, &places[..8]).contains("9 times and 8 places"));
+    assert!(refused(1.0, &times[..7], &places[..7]).contains("needs at least 8 of each"));
+    assert!(refused(1.0, &times, &places[..8]).contains("9 times and 8 positions"));
     let twice = [0.0, 1.0, 2.0, 2.0, 4.0, 5.0, 6.0, 7.0, 8.0];
-    assert!(refused(1.0, &twice, &places).contains("2 s comes after 2 s"));
+    assert!(refused(1.0, &twice, &places).contains("2 s follows 2 s"));
     let mut wrong = places.clone();
     wrong[4] = [0.0; 3];
     assert!(refused(1.0, &times, &wrong).contains("distance"));

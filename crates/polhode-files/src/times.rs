@@ -261,8 +261,8 @@ impl Place {
         }
         match (self.unit, number.parse::<f64>()) {
             (Some(_), Ok(value)) if value.is_finite() && is_other_integer(&number, value) => {
-                let rule = Rule::Other(format!("is no double, and the nearest is {value:e}"));
-                Err(refused(rule).with_remedy("count from a later moment"))
+                let rule = Rule::Other(format!("has too many digits for a double, the nearest is {value:e}"));
+                Err(refused(rule).with_remedy("count from a later time"))
             }
             (Some(unit), Ok(value)) if value.is_finite() => match unit.seconds(value) {
                 time if time.is_finite() => Ok(time),
@@ -501,7 +501,7 @@ mod tests {
             (
                 "t (ns)\n0\n1700000000000000001\n",
                 None,
-                ", line 3, column 1 (t (ns)): '1700000000000000001': is no double, and the nearest is 1.7e18; count",
+                ", line 3, column 1 (t (ns)): '1700000000000000001': has too many digits for a double, the nearest is 1.7e18; count",
             ),
             ("t (ticks)\n1\n", None, ", line 1: column 't (ticks)' is in 'ticks'; known units of time"),
             (

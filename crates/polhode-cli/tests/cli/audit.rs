@@ -307,7 +307,7 @@ fn what_cannot_be_audited_is_refused_with_file_line_and_column() {
     let own = scratch.file("README.md", "# Mine\n");
     refused(
         &format!("audit --golden {}", scratch.0.display()),
-        &["--golden", "another README.md", "empty folder"],
+        &["--golden", "README.md of another kind", "empty folder"],
     );
     assert_eq!(fs::read_to_string(own).unwrap(), "# Mine\n");
     let checks = scratch.0.join("checks");

@@ -392,7 +392,7 @@ fn what_cannot_be_compared_is_refused_with_a_remedy() {
     let line = |flags: &str| format!("{TEXTBOOK} --until 100 {flags}");
     refused(
         &line("--methods rk4 --steps 0.3"),
-        &["--steps: '0.3'", "no whole number of these steps leads to --until 100", "take 0.3003003003003003"],
+        &["--steps: '0.3'", "no whole number of these steps leads to --until 100", "use 0.3003003003003003"],
     );
     refused(&line("--methods rk4"), &["--steps: missing: rk4 needs steps", "--steps h1,h2"]);
     refused(&line("--methods rk4,rkk4 --steps 1"), &["--methods: 'rkk4'", "did you mean 'rk4'?"]);

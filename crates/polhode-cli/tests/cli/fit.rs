@@ -268,7 +268,7 @@ fn unusable_input_is_refused_by_file_line_and_column() {
     refused(2, &format!("fit {short}"), &["short.csv: 2 samples, at most 2 without a gap", "at least 16"]);
     let still = (0..100).map(|i| format!("{i},0,0,0\n")).collect::<String>();
     let still = scratch.file("still.csv", format!("t,wx,wy,wz\n{still}"));
-    refused(1, &format!("fit {still}"), &["still.csv: the rates have a root mean square of 0"]);
+    refused(1, &format!("fit {still}"), &["still.csv: the rotation is too slow", "root mean square of 0"]);
     let headless = scratch.file("headless.csv", "0,9,1,2,3\n1,9,1,2,3\n");
     refused(2, &format!("fit {headless}"), &["headless.csv: no column for time", "--columns t=NAME"]);
     let thousands = scratch.file("thousands.csv", "t,wx,wy,wz\n0.5,\"1,000\",0,0\n");
@@ -427,7 +427,7 @@ fn wheels_and_torques_are_columns() {
     }
     let unused = run(&format!("fit {speed}"));
     assert!(
-        unused.err.contains("(Wheel [rpm]): the column is not used; --wheel nx,ny,nz,I"),
+        unused.err.contains("(Wheel [rpm]): the column is not used; give --wheel nx,ny,nz,I"),
         "{}",
         unused.err
     );

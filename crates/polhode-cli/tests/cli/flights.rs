@@ -49,7 +49,7 @@ fn a_recording_of_throws_is_fitted_by_its_flights() {
     let page = scratch.0.join("fit.md");
     let answer = run(&format!("fit {file} --format json --report {}", page.display()));
     assert_eq!(answer.code, 0, "{}", answer.err);
-    let says = "the record as a whole is not that of a free body: the fit uses 2 flights, ";
+    let says = "the record as a whole is not that of a free body: the fit uses 2 flights of free rotation, ";
     assert!(answer.err.contains(says), "{}", answer.err);
     let found: Value = serde_json::from_str(&answer.out).unwrap();
     let flights = found["flights"].as_array().unwrap();

@@ -115,7 +115,11 @@ fn what_cannot_be_read_is_refused_with_line_and_column() {
             ", line 3, column 1 (t): '1': does not come after the time",
         ),
         ("t,wx,wy,wz\n", "wx=q", ", line 1: no column for 'q'; the header has 't', 'wx', 'wy', 'wz'"),
-        ("t,wx,wy,wz\n", "wx=wx,wy=2", ", line 1: a part of wx, wy, wz in --columns: wz=NAME is missing;"),
+        (
+            "t,wx,wy,wz\n",
+            "wx=wx,wy=2",
+            ", line 1: only a part of wx, wy, wz in --columns: wz=NAME is missing;",
+        ),
         (
             "t,wx,wy,wz,gyro_x,gyro_y,gyro_z\n",
             "",

@@ -10,6 +10,7 @@ const NO_THRESHOLDS: &[&str] = &[
     "banded PIVOTS",
     "banded REGISTER",
     "banded WIDEST",
+    "blocks TOGETHER",
     "coordinates HALF_ROOT",
     "coordinates SIXTH_ROOT",
     "covariance ROOM",

@@ -166,7 +166,7 @@ fn torques_that_a_record_cannot_tell_are_named() {
             Err(error @ FitError::Untold { .. }) => {
                 let text = error.to_string();
                 println!("{wobble}: {text}");
-                assert!(text.starts_with("the record cannot tell drag_"), "{text}");
+                assert!(text.starts_with("the record does not determine drag_"), "{text}");
                 assert!(text.contains("ask for a simpler torque, or record longer"), "{text}");
                 assert!(with(TorqueModel::None).is_ok());
                 refused += 1;
