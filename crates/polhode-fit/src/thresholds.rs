@@ -452,7 +452,10 @@ thresholds! {
         GROSS: f64 = 0.3,
             "largest torque of a record that is free as a whole, over tr(J) |w|^2", "a_free_record_is_one_flight_and_stays_as_it_is";
         SURE: f64 = 3.0, "deviations of the noise beyond which a residual counts", UNMEASURED;
-        LASTING: usize = 4, "tests in a row for which it must", UNMEASURED;
+        LASTING: usize = 4, "tests in a row for which it must, and those of a rest", UNMEASURED;
+        FAST: f64 = 0.5,
+            "rate of a window before or after a rest that no free body has, over the rate of the motion", "free_rates_vary_by_less_than_the_root_of_two";
+        FALL: usize = 4, "tests between the two, of which four are a turn by one radian", UNMEASURED;
         COMMON_TORQUE: f64 = 0.05, "residual that counts in full towards the tensor of a whole record", UNMEASURED;
         REWEIGHTED: usize = 3, "rounds of reweighting of a whole record", UNMEASURED;
     }

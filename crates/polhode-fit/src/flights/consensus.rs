@@ -4,8 +4,8 @@ use crate::flights::equations::{LOCAL, Normal, Reduced, Test, UNKNOWNS, Vector};
 use crate::physical::coordinates::{Coordinates, Form, eigen, tensor};
 use crate::physical::law::LARGEST_SHARE;
 use crate::thresholds::flights::{
-    BEYOND, COMMON_TORQUE, DRAG, GROSS, JUDGES, LASTING, MOST_TORQUE, REFINEMENTS, REWEIGHTED, STRIDE, SURE,
-    TRIED, WINDOW,
+    BEYOND, COMMON_TORQUE, DRAG, FALL, FAST, GROSS, JUDGES, LASTING, MOST_TORQUE, REFINEMENTS, REWEIGHTED,
+    SLOW, STRIDE, SURE, TRIED, WINDOW,
 };
 
 /// Precisions of the unknowns in a window, where `speed` is the rate of the motion: of the tensor one that only keeps
@@ -162,6 +162,29 @@ impl Contradiction {
     }
 }
 
+/// Whether a body that turns is brought to rest, or set in motion, within a turn by about one radian.
+///
+/// Without a torque the rate of a body stays above 1/√2 of its largest, whatever its moments: |ω|² is least on the
+/// separatrix, I₁I₃ / (I₂(I₁ + I₃ − I₂)) ≥ ½ of it. Drag takes it lower, but not as soon.
+pub(super) fn is_held(all: &[Vec<Test>], speed: f64) -> bool {
+    all.iter().any(|tests| {
+        let mut rates: Vec<f64> = tests.iter().map(|test| test.rate() / speed).collect();
+        let ends = stops(&rates);
+        rates.reverse();
+        ends || stops(&rates)
+    })
+}
+
+/// Whether these rates of tests, over that of the motion, fall to rest at once after a window that is fast throughout.
+fn stops(rates: &[f64]) -> bool {
+    (0..=FALL).any(|fall| {
+        rates.windows(WINDOW + fall + LASTING).any(|own| {
+            let (before, after) = (&own[..WINDOW], &own[WINDOW + fall..]);
+            before.iter().all(|rate| *rate > FAST) && after.iter().all(|rate| *rate < SLOW)
+        })
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -253,6 +276,34 @@ mod tests {
         let Ok(found) = consensus(&all, 1.0, 1e-8) else { panic!() };
         assert!((found.x - coordinates(&body())).norm() < 0.02, "{}", found.x);
         assert!(!found.free[0].contains(&true) && !found.free[1].contains(&false), "{:?}", found.free);
+    }
+
+    /// Twelve fast tests and four at rest, in either order, with up to four between them, are those of a body that is held; fewer, or a fall
+    /// that takes longer, are not, and neither are those of two stretches.
+    #[test]
+    fn a_body_that_rests_at_once_is_held() {
+        let of = |fast: usize, between: usize, rest: usize| {
+            let (fast, between) = (core::iter::repeat_n(0.51, fast), core::iter::repeat_n(0.3, between));
+            fast.chain(between).chain(core::iter::repeat_n(0.09, rest)).collect::<Vec<f64>>()
+        };
+        for between in 0..=4 {
+            assert!(stops(&of(12, between, 4)) && stops(&of(20, between, 9)), "{between}");
+            assert!(!stops(&of(11, between, 9)) && !stops(&of(20, between, 3)), "{between}");
+        }
+        assert!(!stops(&of(20, 5, 9)) && !stops(&of(30, 0, 0)) && !stops(&[]));
+        // a moment of rest, and rates between rest and motion
+        assert!(!stops(&[of(20, 0, 3), of(20, 0, 3)].concat()));
+        assert!(!stops(&[vec![0.49; 20], vec![0.05; 20]].concat()));
+        assert!(!stops(&[vec![0.8; 20], vec![0.11; 20]].concat()));
+
+        let body = recording(0.0);
+        let still: Vec<Vector3<f64>> = vec![Vector3::x() * 1e-3; 200];
+        let times: Vec<f64> = (0..200).map(|k| 0.05 * f64::from(k)).collect();
+        let rest = tests(&Stretch::new(times, still), 1.0);
+        let after = [body.clone(), rest.clone()].concat();
+        let before = [rest.clone(), body.clone()].concat();
+        assert!(is_held(&[body.clone(), after], 1.0) && is_held(&[before], 1.0));
+        assert!(!is_held(&[body, rest], 1.0) && !is_held(&[], 1.0));
     }
 
     /// Four tests in a row contradict a free body, three and those of two stretches do not; shares are of the tests that turn.

@@ -27,7 +27,7 @@ use crate::signal::stretch::Stretch;
 use crate::thresholds::test_functions::SAMPLES_PER_TEST;
 use crate::units::Motion;
 use crate::verdict::units::open_units;
-use consensus::{Consensus, Contradiction, NoConsensus, consensus, consensus_beside};
+use consensus::{Consensus, Contradiction, NoConsensus, consensus, consensus_beside, is_held};
 use equations::{Test, tests};
 use extent::{Extent, extent, runs};
 
@@ -71,8 +71,9 @@ impl Flights {
 /// Finds the spans of a record in which the body rotates freely, but for drag; [`during`] cuts them out.
 ///
 /// A record that nowhere contradicts a free body, or one under the torques that [`fit`](super::fit) has columns for, is
-/// one flight from end to end. Otherwise a flight is what one tensor explains together with other flights, up to torques
-/// of 0.02 tr J |ω|². A flight must turn the body; one at less than a tenth of the record's usual rate is not seen.
+/// one flight from end to end; a rest that begins or ends within a turn by about one radian contradicts them. Otherwise
+/// a flight is what one tensor explains together with other flights, up to torques of 0.02 tr J |ω|². A flight must turn
+/// the body; one at less than a tenth of the record's usual rate is not seen.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -116,9 +117,12 @@ pub fn flights(record: &Record, settings: &Settings) -> Result<Flights, FitError
     let speed = speed(&stretches);
     let radius = radius(&stretches, speed);
     let all: Vec<Vec<Test>> = stretches.iter().map(|stretch| tests(stretch, radius)).collect();
-    let Some(contradiction) = Contradiction::new(&all, speed, variance).filter(|c| !c.is_none()) else {
+    let Some(contradiction) = Contradiction::new(&all, speed, variance) else { return Ok(whole(record)) };
+    // known wheels and torques may stop a body, and a throw may be too short to be found beside a rest
+    let may_be_whole = contradiction.is_none();
+    if may_be_whole && (input.is_some() || !is_held(&all, speed)) {
         return Ok(whole(record));
-    };
+    }
     let none = |torque: Option<f64>| {
         // in a wrong unit of rate or time nothing is free; wheels and torques of the record are in units of their own
         let is_asked = settings.check_units && input.is_none();
@@ -128,8 +132,11 @@ pub fn flights(record: &Record, settings: &Settings) -> Result<Flights, FitError
             Ok(_) => FitError::NoFlight { share: contradiction.share(), torque, most: MOST_TORQUE },
         }
     };
-    let agreed = consensus(&all, speed, variance)
-        .map_err(|NoConsensus { least }| none(least.map(|least| MOST_TORQUE * least.sqrt())))?;
+    let agreed = match consensus(&all, speed, variance) {
+        Ok(agreed) => agreed,
+        Err(_) if may_be_whole => return Ok(whole(record)),
+        Err(NoConsensus { least }) => return Err(none(least.map(|least| MOST_TORQUE * least.sqrt()))),
+    };
     let flights_of = |agreed: &Consensus| {
         let mut list: Vec<Flight> = Vec::new();
         for (stretch, (tests, free)) in stretches.iter().zip(all.iter().zip(&agreed.free)) {
@@ -150,7 +157,7 @@ pub fn flights(record: &Record, settings: &Settings) -> Result<Flights, FitError
     };
     let list = flights_of(&agreed);
     if list.is_empty() {
-        return Err(none(None));
+        return if may_be_whole { Ok(whole(record)) } else { Err(none(None)) };
     }
     let rest = consensus_beside(&agreed.free, &all, speed, variance);
     let mut others = rest.map_or_else(|_| Vec::new(), |agreed| flights_of(&agreed));

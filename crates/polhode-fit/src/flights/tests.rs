@@ -241,3 +241,27 @@ fn a_run_ends_where_a_torque_begins() {
     assert!(extent(&all, 20..23, &coordinates(&body()), 1.0, 1e-8).is_none());
     assert!(count > touched + 6);
 }
+
+/// Whatever its moments, the rate of a free body stays above 1/√2 of its largest, and a flat needle comes next to that.
+#[test]
+fn free_rates_vary_by_less_than_the_root_of_two() {
+    let times: Vec<f64> = (0..4000).map(|k| 0.05 * f64::from(k)).collect();
+    let (free, gyroscope) = (Disturbances::default(), Gyroscope::default());
+    let mut most = 0.0_f64;
+    for moments in [[0.02, 1.0, 1.02], [0.02, 1.0, 1.001], [0.3, 1.0, 1.3], [1.0, 2.0, 2.6], [1.0, 1.05, 1.9]]
+    {
+        let body = Inertia::from_moments(moments).unwrap();
+        for start in [[0.01, 1.0, 0.0], [0.0, 1.0, 0.01], [0.5, 1.0, 0.3], [3.0, 1.0, 0.1], [0.1, 0.2, 1.0]] {
+            let start = Vector3::from(start);
+            let rates = simulate_with(&body, start, &times, &free, &gyroscope, &mut Random::new(1)).unwrap();
+            let of = |rates: &[Vector3<f64>]| {
+                let own = rates.iter().map(Vector3::norm);
+                own.clone().fold(0.0, f64::max) / own.fold(f64::INFINITY, f64::min)
+            };
+            let ratio = of(&rates);
+            assert!(ratio < core::f64::consts::SQRT_2, "{moments:?} {start}: {ratio}");
+            most = most.max(ratio);
+        }
+    }
+    assert!(most > 1.38, "{most}");
+}

@@ -215,6 +215,57 @@ fn flights_reach_the_ends_of_segments() {
     assert!(turned > 0.7 * expected && turned < 1.3 * expected, "{turned}");
 }
 
+/// The record of an app that is started in the hand, of one throw, and of the rest after it: however long it rests, the throw alone is fitted.
+#[test]
+fn one_throw_before_or_after_a_rest_is_cut_out() {
+    for (k, rest) in [1.0, 2.0, 4.0].into_iter().enumerate() {
+        for (seed, sigma) in [(1, 1e-3), (2, 2e-2)] {
+            let before = [Part::Still(rest), Part::Thrown(0.9, throw(k))];
+            let after = [Part::Thrown(0.9, throw(k)), Part::Still(rest)];
+            let both = [Part::Still(0.7), Part::Thrown(0.9, throw(k)), Part::Still(rest)];
+            for parts in [&before[..], &after[..], &both[..]] {
+                let Recording { times, rates, throws } = Recording::new(parts, 0.1, &noise(sigma), seed);
+                let record = Record::from_samples(&times, &rates).unwrap();
+                let found = flights(&record, &Settings::default()).unwrap();
+                let ([flight], [(start, end)]) = (&found.list[..], &throws[..]) else { panic!("{found:?}") };
+                assert!(!found.whole && found.others.is_empty(), "{rest} {sigma}: {found:?}");
+                // a radian at either end
+                let is_near = |time: f64, expected: f64| (time - expected).abs() < 0.12;
+                assert!(
+                    is_near(flight.start, *start) && is_near(flight.end, *end),
+                    "{rest} {sigma}: {flight:?}"
+                );
+                let estimate = fit(&during(&record, &found.list), &Settings::default()).unwrap();
+                for (k, moment) in BODY.iter().enumerate() {
+                    let off = (estimate.principal[k] - moment / 5.6).abs() / estimate.sigma_principal[k];
+                    assert!(off < 5.0, "{rest} {sigma}: I{} is {off} deviations off", k + 1);
+                }
+            }
+        }
+    }
+}
+
+/// A body that drag brings to rest is free to the end, and so is one that is as slender as a needle and turns over.
+#[test]
+fn a_free_body_that_comes_to_rest_by_itself_is_one_flight() {
+    let times: Vec<f64> = (0..3000).map(|i| f64::from(i) * STEP).collect();
+    let gyroscope = noise(1e-2);
+    for (moments, omega, drag) in [
+        (BODY, Vector3::new(3.0, 8.0, 4.0), 0.2),
+        (BODY, Vector3::new(3.0, 8.0, 4.0), 1.0),
+        (BODY, Vector3::new(8.0, 0.5, 0.5), 0.5),
+        ([0.02, 1.0, 1.01], Vector3::new(0.1, 5.0, 0.1), 0.0),
+        ([0.02, 1.0, 1.01], Vector3::new(30.0, 2.0, 0.1), 0.5),
+    ] {
+        let body = Inertia::from_moments(moments).unwrap();
+        let air = Disturbances::default().with_relative_drag(drag);
+        let rates = simulate_with(&body, omega, &times, &air, &gyroscope, &mut Random::new(5)).unwrap();
+        let record = Record::from_samples(&times, &rates).unwrap();
+        let found = flights(&record, &Settings::default()).unwrap();
+        assert!(found.whole && found.list.len() == 1, "{omega} {drag}: {found:?}");
+    }
+}
+
 #[test]
 fn a_body_that_is_never_let_go_has_no_flight() {
     for seed in 1..=5 {
