@@ -4,7 +4,7 @@ use super::exact_step::{ExactStep, ExactStepMap};
 use super::schemes::Scheme;
 use super::{Cost, Energy, FreePart, Kicks, Map, Method, SideBySide, Splitting, Symmetric};
 use crate::body::{Field, Free, Point, RENORMALIZE_EVERY, Rotor, Time};
-use crate::flow::{Flow, FreeFlow};
+use crate::flow::{FreeFlow, Last};
 use crate::method::contract::lanes::LaneFlow;
 use crate::num::{Dd, Precise, Real};
 
@@ -57,7 +57,7 @@ impl FreePart for ExactFlow {
 impl<S: Precise> Method<S> for ExactFlow {
     type Map<F: Field<S>> = ExactFlowMap<S>;
     fn map<F: Field<S>>(&self, h: Dd, rotor: &Rotor, _: &F) -> ExactFlowMap<S> {
-        ExactFlowMap(Kind::AnyOrbit { flow: FreeFlow::new(rotor), h: S::from_dd(h) })
+        ExactFlowMap(Kind::AnyOrbit { flow: FreeFlow::new(rotor), h: S::from_dd(h), last: Last::NOTHING })
     }
 
     /// Where nothing acts, the flows of a step are one along an orbit that stays the same. In double-double the series of
@@ -78,6 +78,7 @@ enum Kind<S> {
     AnyOrbit {
         flow: FreeFlow<S>,
         h: S,
+        last: Last<S>,
     },
     OneOrbit(ExactStepMap<S>),
 }
@@ -86,8 +87,8 @@ impl<S: Precise> Map<S> for ExactFlowMap<S> {
     #[inline]
     fn apply(&mut self, at: Time, x: &mut Point<S>) {
         match &mut self.0 {
-            Kind::AnyOrbit { flow, h } => {
-                flow.flow(at, *h, x);
+            Kind::AnyOrbit { flow, h, last } => {
+                flow.flow_again(at, *h, last, x);
                 x.renormalize_at_times();
             }
             Kind::OneOrbit(steps) => steps.apply(at, x),
@@ -95,7 +96,7 @@ impl<S: Precise> Map<S> for ExactFlowMap<S> {
     }
 
     fn part_side_by_side(&self) -> Option<SideBySide<S>> {
-        let Kind::AnyOrbit { flow, h } = &self.0 else { return None };
+        let Kind::AnyOrbit { flow, h, .. } = &self.0 else { return None };
         let renormalize = [(LaneFlow::Renormalize(RENORMALIZE_EVERY), S::of(0.0))];
         flow.goes_side_by_side().then(|| SideBySide::free(*flow, *h, renormalize))
     }

@@ -1,6 +1,7 @@
 //! The free flow of any body in steps of any length, with what rounding takes given back.
 
 use super::short_flow::ShortFlow;
+use super::symmetric_top::Spun;
 use super::{FreeBody, SymmetricTop};
 use crate::body::{Point, Rotor, Time};
 use crate::flow::Flow;
@@ -30,6 +31,15 @@ use crate::rotation::{Quat, Vec3};
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct FreeFlow<S>(Kind<S>);
+
+/// What a flow keeps for the next of the same length.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Last<S>(Option<Spun<S>>);
+
+impl<S> Last<S> {
+    /// Nothing, before the first.
+    pub(crate) const NOTHING: Self = Last(None);
+}
 
 #[derive(Clone, Copy, Debug)]
 enum Kind<S> {
@@ -62,6 +72,17 @@ impl<S: Precise> FreeFlow<S> {
     /// Whether many bodies can be moved side by side.
     pub(crate) fn goes_side_by_side(&self) -> bool {
         self.short().is_some()
+    }
+}
+
+impl<S: Precise> FreeFlow<S> {
+    /// The flow, sooner where the one before was of the same length: the same bits.
+    #[inline]
+    pub(crate) fn flow_again(&self, at: Time, t: S, last: &mut Last<S>, x: &mut Point<S>) {
+        match &self.0 {
+            Kind::Symmetric(flow) => flow.flow_again(t, &mut last.0, x),
+            Kind::Asymmetric { .. } => self.flow(at, t, x),
+        }
     }
 }
 

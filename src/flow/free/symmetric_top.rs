@@ -2,7 +2,7 @@
 
 use crate::body::{Point, Rotor, Time};
 use crate::flow::{Casimir, Flow};
-use crate::num::{Dd, Real};
+use crate::num::{Dd, Precise, Real};
 use crate::rotation::{Quat, Vec3};
 
 /// The exact flow of the free symmetric body, `T = |m|²/(2A) + ½ (1/C − 1/A) m_k²`.
@@ -70,38 +70,86 @@ impl<S: Real> SymmetricTop<S> {
 impl<S: Real> Flow<S> for SymmetricTop<S> {
     #[inline]
     fn flow(&self, _: Time, t: S, x: &mut Point<S>) {
-        let angle = x.momentum_body[self.axis] * (t * self.half_spin);
-        let spin = match self.axis {
-            0 => spin::<0, S>(x, angle),
-            1 => spin::<1, S>(x, angle),
-            _ => spin::<2, S>(x, angle),
-        };
-        // the two turns as one, (1 + a) ∘ (1 + b) − 1
-        let precession = self.precession.turn(t, x.momentum_body);
-        x.add_attitude(x.attitude * (spin + (precession + spin * precession)));
+        let spin = Spun::by(self.half_angle(t, x));
+        self.take(&spin, t, x);
     }
 }
 
-/// Turns the momentum of `x` about `AXIS` by twice the angle `half`, rounding errors carried, and gives the quaternion of that turn
-/// of the body, less one.
+impl<S: Precise> SymmetricTop<S> {
+    /// The same with the spin of the time before where its angle is the same, as it is in every step of a top.
+    #[inline]
+    pub(super) fn flow_again(&self, t: S, last: &mut Option<Spun<S>>, x: &mut Point<S>) {
+        let half = self.half_angle(t, x);
+        let spin = match last {
+            // a zero has a sign, which no comparison tells
+            Some(spin) if spin.half == half && half != S::of(0.0) => spin,
+            last => last.insert(Spun::by(half)),
+        };
+        self.take(spin, t, x);
+    }
+}
+
+impl<S: Real> SymmetricTop<S> {
+    /// Half the angle of the spin.
+    #[inline(always)]
+    fn half_angle(&self, t: S, x: &Point<S>) -> S {
+        x.momentum_body[self.axis] * (t * self.half_spin)
+    }
+
+    #[inline(always)]
+    fn take(&self, spin: &Spun<S>, t: S, x: &mut Point<S>) {
+        let spun = match self.axis {
+            0 => spin.turn::<0>(x),
+            1 => spin.turn::<1>(x),
+            _ => spin.turn::<2>(x),
+        };
+        // the two turns as one, (1 + a) ∘ (1 + b) − 1
+        let precession = self.precession.turn(t, x.momentum_body);
+        x.add_attitude(x.attitude * (spun + (precession + spun * precession)));
+    }
+}
+
+/// A turn of the body about its axis.
 ///
 /// Nothing but a torque about it changes the momentum along the axis, and of a top no torque does: its spin turns by the
 /// same angle in every step. What rounding that angle's sine and cosine adds to |m| is then the same in every step too, and
 /// the energy and L_z follow it. So sin² + cos² = 1, and the products, hold to twice the digits here.
-#[inline(always)]
-fn spin<const AXIS: usize, S: Real>(x: &mut Point<S>, half: S) -> Quat<S> {
-    let (j, k) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
-    let (one, two) = (S::of(1.0), S::of(2.0));
-    let (s, c) = half.sin_cos();
-    let ((ss, ss_low), (sc, sc_low), (cc, cc_low)) = (s.two_prod(s), s.two_prod(c), c.two_prod(c));
-    let (rest, rest_low) = one.two_sum(-ss);
-    let lacking = (rest - cc) + (rest_low - (ss_low + cc_low)); // 1 − s² − c²
-    let (v, w) = (two * ss, two * sc);
-    let (v_low, w_low) = (two * (ss_low + ss * lacking), two * (sc_low + sc * lacking));
-    let m = x.momentum_body;
-    x.add_component(j, w * m[k] - (v * m[j] - (w_low * m[k] - v_low * m[j])));
-    x.add_component(k, -(w * m[j]) - (v * m[k] + (w_low * m[j] + v_low * m[k])));
-    let mut turn = Quat::new(c - one, Vec3::zero());
-    turn.v[AXIS] = s;
-    turn
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spun<S> {
+    half: S,
+    /// Sine of half the angle, and its cosine less one.
+    quaternion: [S; 2],
+    /// 1 − cos and sin of the whole angle, each in two parts.
+    versine: [S; 2],
+    sine: [S; 2],
+}
+
+impl<S: Real> Spun<S> {
+    /// By twice the angle `half`.
+    #[inline(always)]
+    fn by(half: S) -> Self {
+        let (one, two) = (S::of(1.0), S::of(2.0));
+        let (s, c) = half.sin_cos();
+        let ((ss, ss_low), (sc, sc_low), (cc, cc_low)) = (s.two_prod(s), s.two_prod(c), c.two_prod(c));
+        let (rest, rest_low) = one.two_sum(-ss);
+        let lacking = (rest - cc) + (rest_low - (ss_low + cc_low)); // 1 − s² − c²
+        Spun {
+            half,
+            quaternion: [s, c - one],
+            versine: [two * ss, two * (ss_low + ss * lacking)],
+            sine: [two * sc, two * (sc_low + sc * lacking)],
+        }
+    }
+
+    /// Turns the momentum of `x` about `AXIS`, rounding errors carried, and gives the quaternion of that turn of the body, less one.
+    #[inline(always)]
+    fn turn<const AXIS: usize>(&self, x: &mut Point<S>) -> Quat<S> {
+        let (j, k) = ((AXIS + 1) % 3, (AXIS + 2) % 3);
+        let ([v, v_low], [w, w_low], m) = (self.versine, self.sine, x.momentum_body);
+        x.add_component(j, w * m[k] - (v * m[j] - (w_low * m[k] - v_low * m[j])));
+        x.add_component(k, -(w * m[j]) - (v * m[k] + (w_low * m[j] + v_low * m[k])));
+        let mut turn = Quat::new(self.quaternion[1], Vec3::zero());
+        turn.v[AXIS] = self.quaternion[0];
+        turn
+    }
 }
