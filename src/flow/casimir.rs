@@ -45,7 +45,7 @@ impl<S: Real> Casimir<S> {
 
 impl<S: Real> Casimir<S> {
     /// The quaternion of the body's turn in the time `t`, less one.
-    #[inline]
+    #[inline(always)]
     pub(super) fn turn(&self, t: S, m: Vec3<S>) -> Quat<S> {
         // of half of the half angle, from its square: 1 − cos without cancellation, and no root
         let rate = self.quarter_rate(t);

@@ -44,7 +44,7 @@ impl<S: Real, F: Field<S>> Kick<S, F> {
 }
 
 impl<S: Real, F: Field<S>> Flow<S> for Kick<S, F> {
-    #[inline]
+    #[inline(always)]
     fn flow(&self, at: Time, t: S, x: &mut Point<S>) {
         if F::ACTS {
             x.add_momentum(self.field.torque(at, x.attitude, Vec3::zero()) * t);

@@ -31,7 +31,7 @@ pub(crate) use casimir::{quarter_squared, quarters};
 pub use derivative::{DerivativeError, TurnAxes};
 pub use dissipation::Dissipation;
 pub use exact_motion::{ExactMotion, NoClosedForm};
-pub(crate) use free::{Addition, Curve, FreeLanes, FreeOrbit, Last, direction, smallest_turn};
+pub(crate) use free::{Addition, Curve, FreeLanes, FreeOrbit, Last, apart, direction, smallest_turn};
 pub use free::{
     AtRest, Character, CovarianceError, Departure, FittedMotion, FreeBody, FreeFlow, FreeMotion,
     Interpolation, Mode, Passage, Passages, PureSpin, Stability, StartCovariance, StateCovariance,

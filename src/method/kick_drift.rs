@@ -4,7 +4,7 @@ use super::exact_step::{ExactStep, ExactStepMap};
 use super::schemes::Scheme;
 use super::{Cost, Energy, FreePart, Kicks, Map, Method, SideBySide, Splitting, Symmetric};
 use crate::body::{Field, Free, Point, RENORMALIZE_EVERY, Rotor, Time};
-use crate::flow::{FreeFlow, Last};
+use crate::flow::{FreeFlow, Last, apart};
 use crate::method::contract::lanes::LaneFlow;
 use crate::num::{Dd, Precise, Real};
 
@@ -84,14 +84,14 @@ enum Kind<S> {
 }
 
 impl<S: Precise> Map<S> for ExactFlowMap<S> {
-    #[inline]
+    #[inline(always)]
     fn apply(&mut self, at: Time, x: &mut Point<S>) {
         match &mut self.0 {
             Kind::AnyOrbit { flow, h, last } => {
                 flow.flow_again(at, *h, last, x);
                 x.renormalize_at_times();
             }
-            Kind::OneOrbit(steps) => steps.apply(at, x),
+            Kind::OneOrbit(steps) => apart(x, |x| steps.apply(at, x)),
         }
     }
 

@@ -75,13 +75,21 @@ impl<S: Precise> FreeFlow<S> {
     }
 }
 
+/// What `moves` does to `x`, by way of a copy: a point that is lent to a function is not kept in registers.
+#[inline(always)]
+pub(crate) fn apart<S: Real>(x: &mut Point<S>, moves: impl FnOnce(&mut Point<S>)) {
+    let mut moved = *x;
+    moves(&mut moved);
+    *x = moved;
+}
+
 impl<S: Precise> FreeFlow<S> {
     /// The flow, sooner where the one before was of the same length: the same bits.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn flow_again(&self, at: Time, t: S, last: &mut Last<S>, x: &mut Point<S>) {
         match &self.0 {
             Kind::Symmetric(flow) => flow.flow_again(t, &mut last.0, x),
-            Kind::Asymmetric { .. } => self.flow(at, t, x),
+            Kind::Asymmetric { .. } => apart(x, |x| self.flow(at, t, x)),
         }
     }
 }

@@ -30,7 +30,7 @@ pub(crate) use departure::{direction, smallest_turn};
 pub use derivative::StateDerivative;
 pub use free_body::FreeBody;
 pub use free_flow::FreeFlow;
-pub(crate) use free_flow::Last;
+pub(crate) use free_flow::{Last, apart};
 pub use motion::FreeMotion;
 pub(crate) use orbit::FreeOrbit;
 pub(super) use phase::{Pair, Phase, Spin, TOO_FAR, pair, reduce};

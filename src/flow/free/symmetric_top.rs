@@ -77,7 +77,7 @@ impl<S: Real> Flow<S> for SymmetricTop<S> {
 
 impl<S: Precise> SymmetricTop<S> {
     /// The same with the spin of the time before where its angle is the same, as it is in every step of a top.
-    #[inline]
+    #[inline(always)]
     pub(super) fn flow_again(&self, t: S, last: &mut Option<Spun<S>>, x: &mut Point<S>) {
         let half = self.half_angle(t, x);
         let spin = match last {
@@ -93,7 +93,14 @@ impl<S: Real> SymmetricTop<S> {
     /// Half the angle of the spin.
     #[inline(always)]
     fn half_angle(&self, t: S, x: &Point<S>) -> S {
-        x.momentum_body[self.axis] * (t * self.half_spin)
+        // no index: of an array that is indexed, nothing stays in registers
+        let Vec3([first, second, third]) = x.momentum_body;
+        let along = match self.axis {
+            0 => first,
+            1 => second,
+            _ => third,
+        };
+        along * (t * self.half_spin)
     }
 
     #[inline(always)]

@@ -54,7 +54,7 @@ impl<S: Real, F: Field<S>> Map<S> for KickMap<S, F> {
         Some(SideBySide::reading(vec![kick, LaneFlow::Gradient], constants.collect()))
     }
 
-    #[inline]
+    #[inline(always)]
     fn apply(&mut self, at: Time, x: &mut Point<S>) {
         let gradient = self.gradient.zip(self.kick.field().linear_part()).map(|(gradient, linear)| {
             linear.gradient_of_squared_torque(gradient.inverse_moments, x.attitude) * gradient.share

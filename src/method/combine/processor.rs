@@ -13,8 +13,17 @@ pub(in crate::method) struct Timed<M> {
 }
 
 impl<M> Timed<M> {
-    #[inline]
+    #[inline(never)]
     pub(in crate::method) fn apply<S: Real>(&mut self, at: Time, x: &mut Point<S>)
+    where
+        M: Map<S>,
+    {
+        self.apply_inlined(at, x);
+    }
+
+    /// The same, compiled into the caller as far as the map is.
+    #[inline(always)]
+    pub(in crate::method) fn apply_inlined<S: Real>(&mut self, at: Time, x: &mut Point<S>)
     where
         M: Map<S>,
     {

@@ -234,47 +234,61 @@ impl<A> Splitting<A, Kicks> {
             lengths::<S>(h, &shares).into_iter()
         };
         let (mut a_lengths, mut b_lengths) = (lengths(Part::A), lengths(Part::B));
-        let gradients = self.scheme.gradients();
-        let first_gradient = gradients.first().copied().unwrap_or(Dd::ZERO);
-        let mut gradients = gradients.into_iter();
+        let mut gradients = self.scheme.gradients().into_iter();
         let processor = Processor::new::<S>(h, &self.scheme.processor(), &a, &b);
-        let (mut opening, mut pairs, mut free) = (None, Vec::new(), None);
-        let (mut begun, mut first) = (processor.duration, None);
-        for (part, _) in &flows {
-            match part {
-                // the time goes by in A; in B it stands
-                Part::A => {
-                    let length = a_lengths.next().unwrap_or(Dd::ZERO);
-                    first = first.or(Some(length));
-                    free = Some(Timed { begun, map: a(length) });
-                    begun = begun + length;
-                }
-                Part::B => {
-                    let length = b_lengths.next().unwrap_or(Dd::ZERO);
-                    first = first.or(Some(length));
-                    let gradient = gradients.next().unwrap_or(Dd::ZERO);
-                    let kick = Timed { begun, map: b(length).with_gradient(gradient, h, rotor) };
-                    match free.take() {
-                        Some(free) => pairs.push((free, kick)),
-                        None => opening = Some(kick),
-                    }
-                }
+        let mut begun = processor.duration;
+        let stage = |(part, _): &(Part, Dd)| {
+            let at = begun;
+            let (length, gradient) = match part {
+                Part::A => (a_lengths.next().unwrap_or(Dd::ZERO), Dd::ZERO),
+                Part::B => (b_lengths.next().unwrap_or(Dd::ZERO), gradients.next().unwrap_or(Dd::ZERO)),
+            };
+            // the time goes by in A; in B it stands
+            if *part == Part::A {
+                begun = begun + length;
             }
-        }
-        let first = first.unwrap_or(Dd::ZERO);
-        let ends = match &free {
+            Stage { begun: at, length, gradient }
+        };
+        let stages: Vec<Stage> = flows.iter().map(stage).collect();
+        let free = |stage: &Stage| Timed { begun: stage.begun, map: a(stage.length) };
+        let kick_by = |length, gradient| b(length).with_gradient(gradient, h, rotor);
+        let kick = |stage: &Stage| Timed { begun: stage.begun, map: kick_by(stage.length, stage.gradient) };
+        let opens = flows.first().is_some_and(|flow| flow.0 == Part::B);
+        let behind = &stages[usize::from(opens)..];
+        let (opening, closing) = (stages.first().filter(|_| opens), behind.as_chunks::<2>().1.first());
+        let pairs = behind.as_chunks().0.iter().map(|[a, b]| (free(a), kick(b))).collect();
+        let ends = match stages.split_first() {
             // without forces B does nothing
             _ if !F::ACTS => Ends::OfA,
-            None if opening.is_none() => Ends::Apart,
-            None => Ends::B {
-                merged: Timed { begun, map: b(first * 2.0).with_gradient(first_gradient * 2.0, h, rotor) },
-                back: b(-first).with_gradient(-first_gradient, h, rotor),
+            Some((first, others)) if opens && closing.is_none() => Ends::B {
+                cycle: merged(first, others).map(|[a, b]| (free(&a), kick(&b))).collect(),
+                back: kick_by(-first.length, -first.gradient),
             },
-            Some(_) if !exact => Ends::Apart,
-            Some(last) => {
-                Ends::A { merged: Timed { begun: last.begun, map: a(first * 2.0) }, back: a(-first) }
-            }
+            Some((first, others)) if !opens && closing.is_some() && exact => Ends::A {
+                cycle: merged(first, others).map(|[b, a]| (kick(&b), free(&a))).collect(),
+                back: a(-first.length),
+            },
+            _ => Ends::Apart,
         };
-        SplittingMap { h, processor, opening, pairs, closing: free, ends }
+        SplittingMap { h, processor, opening: opening.map(kick), pairs, closing: closing.map(free), ends }
     }
+}
+
+/// A flow of a step: when it begins, s since the beginning of the step, how long it takes, and the share of the gradient.
+#[derive(Clone, Copy)]
+struct Stage {
+    begun: Dd,
+    length: Dd,
+    gradient: Dd,
+}
+
+/// The flows behind the first, in pairs, the last of them as long as both ends.
+fn merged(first: &Stage, others: &[Stage]) -> impl Iterator<Item = [Stage; 2]> {
+    let pairs = others.as_chunks().0;
+    pairs.iter().enumerate().map(move |(n, &[one, other])| {
+        if n + 1 < pairs.len() {
+            return [one, other];
+        }
+        [one, Stage { length: first.length * 2.0, gradient: first.gradient * 2.0, ..other }]
+    })
 }

@@ -24,10 +24,30 @@ pub(super) enum Ends<A, B> {
     OfA,
     /// Nothing: the two flows are of different parts, or not exact.
     Apart,
-    /// Two flows of A as one, and the one that takes half of it back.
-    A { merged: Timed<A>, back: A },
+    /// Two flows of A are one: the pairs of a step behind its first flow, and the flow that takes half of the last one back.
+    A { cycle: Vec<(Timed<B>, Timed<A>)>, back: A },
     /// Two flows of B likewise.
-    B { merged: Timed<B>, back: B },
+    B { cycle: Vec<(Timed<A>, Timed<B>)>, back: B },
+}
+
+/// `n` steps of the maps of `cycle` in turn, which are counted. The point is one's own, so that what is inlined keeps it in registers.
+#[inline]
+fn sweep<S: Real, P: Map<S>, Q: Map<S>>(
+    cycle: &mut [(Timed<P>, Timed<Q>)],
+    n: u64,
+    clock: &Clock,
+    x: &mut Point<S>,
+) {
+    let mut moved = *x;
+    for _ in 0..n {
+        let at = clock.at(moved.steps());
+        for (p, q) in &mut *cycle {
+            p.apply_inlined(at, &mut moved);
+            q.apply_inlined(at, &mut moved);
+        }
+        moved.count_steps(1);
+    }
+    *x = moved;
 }
 
 impl<A, B> SplittingMap<A, B> {
@@ -63,8 +83,8 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
         self.processor.apply(at, x);
         match (&self.ends, &mut self.pairs[..], &mut self.opening) {
             (Ends::OfA, [(a, _)], _) => a.map.open(at, x),
-            (Ends::A { .. }, [(a, _), ..], _) => a.map.apply(at, x),
-            (Ends::B { .. }, _, Some(b)) => b.map.apply(at, x),
+            (Ends::A { .. }, [(a, _), ..], _) => a.apply(at, x),
+            (Ends::B { .. }, _, Some(b)) => b.apply(at, x),
             _ => {}
         }
     }
@@ -73,21 +93,17 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
     fn advance(&mut self, at: Time, x: &mut Point<S>) {
         match (&mut self.ends, &mut self.pairs[..]) {
             (Ends::OfA, [(a, _)]) => a.map.advance(at, x),
-            (Ends::A { merged, .. }, [(_, first), pairs @ ..]) => {
-                first.apply(at, x);
-                for (a, b) in pairs {
-                    a.apply(at, x);
+            (Ends::A { cycle, .. }, _) => {
+                for (b, a) in cycle {
                     b.apply(at, x);
+                    a.apply(at, x);
                 }
-                merged.apply(at, x);
             }
-            (Ends::B { merged, .. }, [pairs @ .., (last, _)]) => {
-                for (a, b) in pairs {
+            (Ends::B { cycle, .. }, _) => {
+                for (a, b) in cycle {
                     a.apply(at, x);
                     b.apply(at, x);
                 }
-                last.apply(at, x);
-                merged.apply(at, x);
             }
             _ => self.kernel(at, x),
         }
@@ -95,12 +111,16 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
 
     #[inline]
     fn advance_by(&mut self, n: u64, clock: &Clock, x: &mut Point<S>) {
-        if let (Ends::OfA, [(a, _)]) = (&self.ends, &mut self.pairs[..]) {
-            return a.map.advance_by(n, clock, x);
-        }
-        for _ in 0..n {
-            self.advance(clock.at(x.steps()), x);
-            x.count_steps(1);
+        match (&mut self.ends, &mut self.pairs[..]) {
+            (Ends::OfA, [(a, _)]) => a.map.advance_by(n, clock, x),
+            (Ends::A { cycle, .. }, _) => sweep(cycle, n, clock, x),
+            (Ends::B { cycle, .. }, _) => sweep(cycle, n, clock, x),
+            _ => {
+                for _ in 0..n {
+                    self.kernel(clock.at(x.steps()), x);
+                    x.count_steps(1);
+                }
+            }
         }
     }
 
@@ -133,18 +153,9 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
         match (&self.ends, &self.pairs[..]) {
             (Ends::OfA, [(a, _)]) if self.processor.is_empty() => a.map.side_by_side(),
             (Ends::OfA, _) => None,
-            (Ends::A { merged, .. }, [(_, first), pairs @ ..]) => {
-                let pairs = pairs.iter().flat_map(|(a, b)| [a.part_side_by_side(), b.part_side_by_side()]);
-                let first = [first.part_side_by_side()].into_iter();
-                let parts = first.chain(pairs).chain([merged.part_side_by_side()]);
-                SideBySide::chained(parts.collect::<Option<Vec<_>>>()?)
-            }
-            (Ends::B { merged, .. }, [pairs @ .., (last, _)]) => {
-                let pairs = pairs.iter().flat_map(|(a, b)| [a.part_side_by_side(), b.part_side_by_side()]);
-                let parts = pairs.chain([last.part_side_by_side(), merged.part_side_by_side()]);
-                SideBySide::chained(parts.collect::<Option<Vec<_>>>()?)
-            }
-            (Ends::A { .. } | Ends::B { .. } | Ends::Apart, pairs) => {
+            (Ends::A { cycle, .. }, _) => SideBySide::chained(parts_of(cycle)?),
+            (Ends::B { cycle, .. }, _) => SideBySide::chained(parts_of(cycle)?),
+            (Ends::Apart, pairs) => {
                 let pairs = pairs.iter().flat_map(|(a, b)| [a.part_side_by_side(), b.part_side_by_side()]);
                 let opening = self.opening.iter().map(Timed::part_side_by_side);
                 let parts = opening.chain(pairs).chain(self.closing.iter().map(Timed::part_side_by_side));
@@ -154,13 +165,24 @@ impl<S: Real, A: Map<S>, B: Map<S>> Map<S> for SplittingMap<A, B> {
     }
 
     fn worst_residual(&self) -> f64 {
-        let pairs = self.pairs.iter().map(|(a, b)| a.map.worst_residual().max(b.map.worst_residual()));
         let opening = self.opening.iter().map(|b| b.map.worst_residual());
         let closing = self.closing.iter().map(|a| a.map.worst_residual());
         let merged = match &self.ends {
-            Ends::A { merged, .. } => merged.map.worst_residual(),
+            Ends::A { cycle, .. } => worst_of(cycle),
+            Ends::B { cycle, .. } => worst_of(cycle),
             _ => 0.0,
         };
-        pairs.chain(opening).chain(closing).fold(merged.max(self.processor.worst_residual()), f64::max)
+        let worst = merged.max(worst_of(&self.pairs)).max(self.processor.worst_residual());
+        opening.chain(closing).fold(worst, f64::max)
     }
+}
+
+fn parts_of<S: Real, P: Map<S>, Q: Map<S>>(
+    cycle: &[(Timed<P>, Timed<Q>)],
+) -> Option<Vec<(Dd, SideBySide<S>)>> {
+    cycle.iter().flat_map(|(p, q)| [p.part_side_by_side(), q.part_side_by_side()]).collect()
+}
+
+fn worst_of<S: Real, P: Map<S>, Q: Map<S>>(pairs: &[(Timed<P>, Timed<Q>)]) -> f64 {
+    pairs.iter().map(|(p, q)| p.map.worst_residual().max(q.map.worst_residual())).fold(0.0, f64::max)
 }
