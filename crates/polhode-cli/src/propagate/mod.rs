@@ -53,8 +53,35 @@ const EXAMPLES: &str = "Examples:
     --event 'angle(body z, space x) < 30deg' --stop";
 
 /// Rotation of one body: attitude, angular velocity and errors at given times
+///
+/// The columns:
+///
+///   t                      time, s
+///   q_w, q_x, q_y, q_z     attitude: unit quaternion, body to space, scalar first
+///   omega_body_x, _y, _z   angular velocity, body axes, rad/s
+///   energy                 kinetic and potential energy, J
+///   momentum               |m|, the size of the angular momentum, kg m^2/s
+///   energy_error           relative error of the energy
+///   momentum_error         relative error of |m|
+///   momentum_vector_error  relative error of L, the angular momentum in space
+///   momentum_z_error       relative error of L_z, where L as a whole changes
+///   jacobi_error           relative error of E - n L_z, only with the gravity
+///                          gradient on a circle with the mean motion n
+///   attitude_error         angle to the exact attitude, rad; empty for exact, and
+///                          where there is no closed form
+///   phi, theta, psi        Euler angles, rad, with --euler
+///   observer_longitude,    direction to the observer in body axes, rad, with
+///   observer_latitude      --observer
+///   jd                     Julian date, with --epoch, where --fields names it
+///
+/// A relative error is the largest so far, and empty where the motion does not
+/// conserve the quantity. With forces the energy error is relative to the sum of
+/// kinetic energy, weight moment, potentials and torques at the start.
+///
+/// Exit code 1: the numbers stop being those of a rotation, as where a run
+/// diverges; the rows so far are printed.
 #[derive(Args, Clone, Debug)]
-#[command(override_usage = USAGE, after_help = EXAMPLES)]
+#[command(verbatim_doc_comment, override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Propagate {
     #[command(flatten)]
     motion: MotionArguments,
@@ -66,7 +93,7 @@ pub(crate) struct Propagate {
     /// Stop at the first event
     #[arg(long, requires = "events", help_heading = "Events")]
     stop: bool,
-    /// Exact motion through the attitudes of a file (t, q_w, q_x, q_y, q_z; body to space unless the names of its columns say otherwise), from the first to the last with --every between rows, with the error of spherical linear interpolation. Exit code 1: no free motion of this body leads through them, and between them its angular momentum changes by more than a tenth
+    /// Exact motion through the attitudes of a file (t, q_w, q_x, q_y, q_z; body to space unless the names of its columns say otherwise), from the first to the last with --every between rows, with the error of spherical linear interpolation in the column slerp_error, rad. Exit code 1: no free motion of this body leads through them, and between them its angular momentum changes by more than a tenth
     #[arg(long, value_name = "POSES", requires = "every", help_heading = "Through attitudes",
           conflicts_with_all = ["omega", "momentum_body", "momentum_space", "attitude", "angles", "rotation", "frame", "to_frame", "periods", "times", "times_column", "until", "start_time", "events", "method", "step", "tolerance"])]
     through: Option<PathBuf>,
