@@ -54,37 +54,37 @@ impl Advice {
         &self.found.best.method
     }
 
-    /// Its step, s; of a method that chooses its steps the interval of its output; `None` of the closed form.
+    /// Its step, s; for a method that chooses its steps, the interval of output; `None` for the closed form.
     #[getter]
     fn step(&self) -> Option<f64> {
         step_and_tolerance(&self.found.best).0
     }
 
-    /// Its tolerance, of a method that chooses its steps.
+    /// Its tolerance, if it chooses its steps, else `None`.
     #[getter]
     fn tolerance(&self) -> Option<f64> {
         step_and_tolerance(&self.found.best).1
     }
 
-    /// Largest attitude error that is expected, rad.
+    /// Largest attitude error that is predicted, rad.
     #[getter]
     fn predicted_error(&self) -> f64 {
         self.found.best.attitude_error.value
     }
 
-    /// Largest relative energy error that is expected; `None` where energy is not conserved.
+    /// Largest relative energy error that is predicted; `None` if the energy is not conserved.
     #[getter]
     fn predicted_energy_error(&self) -> Option<f64> {
         self.found.best.energy_error
     }
 
-    /// Processor time on this machine, s.
+    /// Predicted processor time on this machine, s.
     #[getter]
     fn predicted_cost(&self) -> f64 {
         self.found.best.seconds.value
     }
 
-    /// The attitude error of the advice when run to the end, rad, where `check` asked for it.
+    /// Attitude error of the advised method when run to the end, rad, if `check` asked for it.
     #[getter]
     fn actual_error(&self) -> Option<f64> {
         self.actual_error
@@ -96,25 +96,25 @@ impl Advice {
         self.found.others.first().map(|choice| choice.method.as_str())
     }
 
-    /// How far a start with other last digits is away at the end, rad.
+    /// Angle at the end to the motion from a start that differs in its last digits, rad.
     #[getter]
     fn conditioning(&self) -> f64 {
         self.found.conditioning
     }
 
-    /// The others that meet the demand, the quicker first, as dicts.
+    /// The other methods that meet the demand, the quickest first, as dicts.
     #[getter]
     fn others<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         self.found.others.iter().map(|choice| dict(py, choice)).collect()
     }
 
-    /// Methods that do not meet it, with the smallest attitude error at which they were seen, rad.
+    /// Methods that do not meet it, each with the smallest attitude error that it reached, rad.
     #[getter]
     fn unfit(&self) -> Vec<(String, Option<f64>)> {
         self.found.unfit.clone()
     }
 
-    /// The advice as a dict, by the names of the command's JSON.
+    /// The advice as a dict, with the names of the command's JSON.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let found = dict(py, &self.found.best)?;
         found.set_item("runner_up", self.runner_up())?;
@@ -143,15 +143,17 @@ impl Advice {
     }
 }
 
-/// The quickest method that moves `body` from the start for `until` seconds, with an attitude error of at most `attitude_error`, rad, and
-/// its step or tolerance: found by running the methods on the body itself.
+/// The quickest method that moves `body` to a given accuracy, with its step or tolerance, found by running the methods on the body itself.
 ///
-/// The start is that of `FreeMotion`, at the time `start_time`, s, for forces that depend on time. `energy_error`: largest relative error
-/// of the energy; `budget`: largest processor time, s;
-/// `exclude`: names of methods that are not wanted; `check`: whether the advice is run to the end and its attitude compared with
-/// the motion, with a warning where that is more than was asked for; the energy error stays the predicted one.
-/// `progress` is called as `progress(stage, done, seconds)`, some times a second and at the end of a stage: what is done, which part of it,
-/// and about how long all of it takes.
+/// - `omega`, `attitude`, `momentum`: the start, as of `FreeMotion`, at the time `start_time`, s, on which forces may depend.
+/// - `until`: end of the motion, s.
+/// - `attitude_error`: largest error of the attitude, rad; `energy_error`: largest relative error of the energy; `budget`: largest processor
+///   time, s.
+/// - `exclude`: names of methods that are not wanted.
+/// - `check`: run the advised method to the end, and compare its attitude with the true motion. A warning says if its error is larger than
+///   asked for. The energy error is only predicted.
+/// - `progress`: called as `progress(stage, done, seconds)` some times a second: what is being done, which part of it is done, and about how
+///   long all of it takes.
 ///
 /// >>> import polhode
 /// >>> advice = polhode.advise("toutatis", until=30 * 86400, attitude_error=1e-6, exclude=["exact"])

@@ -17,7 +17,7 @@ use crate::shown;
 use crate::tables::Record;
 use crate::through::free;
 
-/// Attitudes at the times of a record, and what each is worth.
+/// Attitudes at the times of a record, each with its error budget.
 #[pyclass(frozen, module = "polhode")]
 pub(crate) struct Attitudes {
     estimates: Vec<Estimate>,
@@ -26,18 +26,23 @@ pub(crate) struct Attitudes {
     order: Order,
 }
 
-/// Attitudes from the readings of a gyroscope, each with its error budget; what `polhode attitude` prints.
+/// Attitudes from the readings of a gyroscope, each with its error budget, as `polhode attitude` prints them.
 ///
-/// `t`, s, and `rates` (n, 3) in body axes, or one `Record`. `kind` says what a reading is: `rate` (rad/s at its time), `average` (rad/s, mean
-/// since the one before) or `increment` (rad since the one before). `start` is the attitude at the first time, which counts as exact.
-/// `rule` is `auto` (order and samples chosen with the noise), `magnus:ORDER`, `magnus:ORDER,SAMPLES`, or what others run: `hold`,
-/// `trapezoid`, `two-speed`, `runge-kutta`. Standard deviations of the sensor: `noise` of a reading (found in the record where it
-/// is not given), `bias`, rad/s, `scale_error`, a ratio, `stamps`, s, of which noise that is found is a part. With a free `body` the
-/// attitudes are those of its exact motion that fits all rates best; a warning says where they contradict those of the readings alone.
-/// What the command leaves out is left out here, too, so that there may be fewer attitudes than samples, at the times `t` of the result:
-/// rates that stand far out of their neighbours, repeat the reading before or are at the end of the sensor's range; rates of one time are
-/// averaged. Warnings say so, and where an increment may be missing, the samples are too few to tell noise or truncation, or the attitude is
-/// lost. Gaps are refused.
+/// - `t`, s, and `rates` (n, 3) in body axes; or a `Record` of `read` in place of both.
+/// - `kind`: what a reading is: "rate" (rad/s at its time), "average" (mean rate since the reading before, rad/s) or "increment" (angle since
+///   the reading before, rad).
+/// - `start`: attitude at the first time, body to space, which counts as exact; by default the identity. `order` is that of quaternions,
+///   given and returned.
+/// - `rule`: "auto" (chosen from the record and its noise), "magnus:ORDER", "magnus:ORDER,SAMPLES", or a rule of other programs: "hold",
+///   "trapezoid", "two-speed", "runge-kutta".
+/// - `noise` of a reading (found in the record if it is not given), `bias`, rad/s, `scale_error`, a ratio, and `stamps`, s: standard
+///   deviations of the sensor. Noise that is found in the record already contains that of the stamps.
+/// - `body`: a free body. The attitudes are then those of its exact motion that fits all rates best, and a warning says where they contradict
+///   the readings.
+///
+/// The result may have fewer times than the record, as some readings are left out: rates that jump off their neighbours, that repeat the
+/// reading before, or that are at the end of the sensor's range. Rates of the same time are averaged. Warnings say so. Warnings also say if
+/// an increment may be missing, if there are too few samples to estimate noise or truncation, and if the attitude is lost. Gaps are refused.
 ///
 /// >>> import numpy, polhode
 /// >>> t = numpy.arange(2000) * 0.05
@@ -253,13 +258,13 @@ impl Attitudes {
         scipy_rotation(&self.attitude(py)?, self.order)
     }
 
-    /// Standard deviation of each component of the attitude error by all causes, rad.
+    /// Standard deviation of each component of the attitude error, from all causes, rad.
     #[getter]
     fn sigma<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.column(py, |estimate| estimate.budget.sigma())
     }
 
-    /// Estimated error of the rule, rad; 0 of an exact motion.
+    /// Estimated error of the rule, rad; 0 for the exact motion of a body.
     #[getter]
     fn truncation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.column(py, |estimate| estimate.budget.truncation)
@@ -285,13 +290,13 @@ impl Attitudes {
         array(py, entries.copied().collect(), &[self.estimates.len(), 3, 3])
     }
 
-    /// The rule by which readings became turns, as `magnus:6,8`: order 6 through 8 samples.
+    /// The rule that turned readings into attitudes, such as `magnus:6,8`: order 6 through 8 samples.
     #[getter]
     fn rule(&self) -> &str {
         &self.rule
     }
 
-    /// White noise of a reading that was given, or found in the record, rad/s; of increments rad.
+    /// White noise of a reading, as given or found in the record, rad/s; of increments rad.
     #[getter]
     fn noise(&self) -> f64 {
         self.noise

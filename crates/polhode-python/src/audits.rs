@@ -23,11 +23,11 @@ use crate::shown;
 use crate::tables::Trajectory;
 use crate::units::named_rate;
 
-/// A verdict on a trajectory. It has what the JSON of `polhode audit` has as attributes, and prints as the command does.
+/// A verdict on a trajectory. Printed, it is the report of `polhode audit`; its attributes are the fields of the command's JSON:
 ///
-/// `verdict` (`right`, `wrong` or `undecided`), `suspect`, `reading` (the convention, a dict), `ties`, `ranking`, `rows`,
-/// `energy_error`, `momentum_error`, `momentum_vector_error` (relative), `attitude_error` (rad), `flips`, `flips_exact`,
-/// `conservation`, `motion`, `integrator`, `other_body`, `other_torque`, `other_wheel`, `advice`, `resolution`, `body`, `warnings`.
+/// `verdict` ("right", "wrong" or "undecided"), `suspect`, `reading` (the convention, a dict), `ties`, `ranking`, `rows`, `energy_error`,
+/// `momentum_error` and `momentum_vector_error` (relative), `attitude_error` (rad), `flips`, `flips_exact`, `conservation`, `motion`,
+/// `integrator`, `other_body`, `other_torque`, `other_wheel`, `advice`, `resolution`, `body`, `warnings`.
 #[pyclass(frozen, module = "polhode", name = "Verdict")]
 pub(crate) struct Verdict {
     name: String,
@@ -60,12 +60,12 @@ impl Verdict {
         Ok(found)
     }
 
-    /// Everything as a dict.
+    /// All fields as a dict.
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         python(py, &self.answer)
     }
 
-    /// Everything as the JSON that the command writes.
+    /// All fields as the JSON that the command writes.
     fn to_json(&self) -> String {
         json(std::slice::from_ref(&self.outcome))
     }
@@ -87,7 +87,7 @@ impl Verdict {
         keywords(text(&self.name, std::slice::from_ref(&self.outcome)).trim_end())
     }
 
-    /// The words with the figure of the errors.
+    /// The report with the figure of the errors.
     fn _repr_html_(&self) -> PyResult<String> {
         let drawing = panels(&self.name, std::slice::from_ref(&self.outcome)).map_err(refused)?;
         Ok(shown::page(&self.__repr__(), &drawing.svg))
@@ -96,18 +96,20 @@ impl Verdict {
 
 /// The verdict on a trajectory: whether it is right, in which convention it is written, and how large its error is.
 ///
-/// `t`: times, s; `attitude`: quaternions (n, 4), matrices (n, 3, 3), a scipy rotation, or with `form` `"euler"` or `"rodrigues"` angles
-/// or modified Rodrigues parameters (n, 3); `omega`: angular velocities (n, 3); `momentum`: angular momenta (n, 3). Or in place of `t` a
-/// `Trajectory` of `read`, with what its names claim. The body is given by its `moments`, its tensor `inertia`, or as a `body`, with
-/// forces; without one the moments are fitted up to a factor.
-///
-/// Conventions are found from the rows; what is stated by `order` (`"wxyz"`, `"xyzw"`), `direction` (`"body-to-space"`,
-/// `"space-to-body"`), `omega_frame` and `momentum_frame` (`"body"`, `"space"`), `rate_unit`, `euler` (as `"zyx"`, or
-/// `"zyx:extrinsic"`; columns roll, pitch and yaw are taken by the letters) and `angle_unit`, and the rows contradict, makes the record
-/// wrong; said of columns that the record has not, it is refused. Columns that name their scalar are read by their names, whatever `order`
-/// says. `any_order`: the moments may belong to the axes in any order. `tolerance`: largest error of a record that is right, rad and
-/// relative; `noise`: standard deviations that the record has, rad, or a pair of rad and rad/s, each 0 where the record has no such
-/// columns. `advice`: whether a record that is wrong by its integrator gets a method that would do, which takes two seconds at most.
+/// - `t`: times, s; or, in place of `t`, `attitude`, `omega` and `momentum`, a `Trajectory` of `read`.
+/// - `attitude`: quaternions (n, 4), matrices (n, 3, 3) or a scipy rotation. With `form` "euler" or "rodrigues": Euler angles or modified
+///   Rodrigues parameters (n, 3).
+/// - `omega`: angular velocities (n, 3); `momentum`: angular momenta (n, 3).
+/// - `moments`, `inertia` or `body`: the principal moments in the order of the body axes, the tensor, or a body with its forces. Without any
+///   of them the moments are fitted, up to a factor. `any_order`: the moments may belong to the axes in any order.
+/// - `tolerance`: largest error of a record that is right, rad and relative.
+/// - `noise`: standard deviation of the attitudes, rad, or a pair with that of the angular velocities, rad/s; 0 where the record has none.
+/// - `order` ("wxyz", "xyzw"), `direction` ("body-to-space", "space-to-body"), `omega_frame` and `momentum_frame` ("body", "space"),
+///   `rate_unit` ("rad/s", "deg/s", "rpm"), `euler` (as "zyx" or "zyx:extrinsic") and `angle_unit` ("rad", "deg") state a convention; what
+///   is not stated is found from the rows. A record that contradicts a stated convention is wrong. A convention of columns that the record
+///   does not have is refused. Columns that name the scalar of a quaternion are read by their names, whatever `order` is. Columns that
+///   are called roll, pitch and yaw are the angles about x, y and z.
+/// - `advice`: if the integrator is what is wrong, search for a method and a step that are accurate enough, for at most two seconds.
 ///
 /// >>> import numpy, polhode
 /// >>> t = numpy.arange(400) * 0.05

@@ -18,10 +18,14 @@ use crate::links::Link;
 use crate::masses::MassProperties;
 use crate::wheels::Wheel;
 
-/// A rigid body: inertia in body axes, kg m^2, the forces that act on it, and the wheels that it carries.
+/// A rigid body: its inertia, the forces that act on it, and the wheels that it carries.
 ///
-/// `inertia` is three principal moments, the k-th of the k-th body axis; a tensor of shape (3, 3), entries I_xy = -int x y dm; mass
-/// properties or a link of a model, of which it takes the tensor about the centre of mass; or the text that `body` takes.
+/// `inertia` is one of these:
+///
+/// - three principal moments, kg m^2; the k-th belongs to the k-th body axis
+/// - a tensor (3, 3) in body axes, kg m^2, with entries I_xy = -int x y dm
+/// - mass properties or a link of a robot model, whose tensor about the centre of mass is taken
+/// - a text as `polhode.body` takes it, such as "toutatis" or "robot.urdf:forearm"
 ///
 /// >>> from polhode import Body
 /// >>> Body([1, 2, 3]).tensor
@@ -155,7 +159,7 @@ impl Body {
         Ok(Body { body, named, sizeless, raised })
     }
 
-    /// The inertia tensor, with that of wheels at rest on the body, body axes, kg m^2.
+    /// The inertia tensor in body axes, kg m^2. It includes wheels, as if they were at rest on the body.
     #[getter]
     fn tensor<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         matrix(py, &self.body.locked_inertia().tensor())
@@ -185,25 +189,25 @@ impl Body {
         self.named.as_ref().map(|named| named.name)
     }
 
-    /// What it is, and where its moments come from, of a body of the catalogue.
+    /// For a body of the catalogue: what it is, and where its moments come from.
     #[getter]
     fn source(&self) -> Option<String> {
         self.named.as_ref().map(|named| format!("{}; {}", named.summary, named.source))
     }
 
-    /// The angular velocity of its published motion, body axes, rad/s, of a body of the catalogue.
+    /// For a body of the catalogue: angular velocity at the start of its published motion, body axes, rad/s.
     #[getter]
     fn omega<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.named.as_ref().map(|named| array(py, named.omega_body.to_vec(), &[3])).transpose()
     }
 
-    /// The attitude at the start of that motion, w, x, y, z, body to space.
+    /// For a body of the catalogue: attitude at the start of its published motion, w, x, y, z, body to space.
     #[getter]
     fn attitude<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.named.as_ref().map(|named| array(py, named.attitude.to_vec(), &[4])).transpose()
     }
 
-    /// What is known of that attitude, in words.
+    /// Frame and date of that attitude, or that it is not known, in words.
     #[getter]
     fn attitude_known(&self) -> Option<String> {
         self.named.as_ref().map(|named| named.attitude_known())
@@ -224,9 +228,11 @@ impl Body {
     }
 }
 
-/// The body that a text names: one of the catalogue, with its start and the wheels that it carries then, or one of a file as `FILE` or `FILE:LINK`.
-/// A mesh has 1 kg/m^3, and neither wheels nor forces but a gravity gradient, under which its size does not count. A tensor that is valid, but
-/// suspicious, as of an implausible density, is a PolhodeWarning.
+/// A body of the catalogue by name, with its start and its wheels; or a body of a file, as "FILE" or "FILE:LINK".
+///
+/// A mesh is taken with 1 kg/m^3, so that only the ratios of its moments are known: wheels and forces are refused, except a gravity gradient,
+/// whose effect does not depend on the size of the tensor. A tensor that is valid but suspicious, as with an implausible density, brings a
+/// `PolhodeWarning`.
 ///
 /// >>> import polhode
 /// >>> polhode.body("toutatis")
@@ -275,7 +281,7 @@ fn names() -> Vec<&'static str> {
     catalogue::bodies().iter().chain(&catalogue::tops()).map(|body| body.name).collect()
 }
 
-/// The names of the catalogue, tops last.
+/// The names of the bodies of the catalogue, tops last.
 #[pyfunction(name = "bodies")]
 pub(crate) fn catalogue_names() -> Vec<&'static str> {
     names()

@@ -20,7 +20,7 @@ use crate::masses::MassProperties;
 use crate::scalars::maybe;
 use crate::units::positive;
 
-/// An absolute tensor and how far to trust it, kg m^2, sensor axes.
+/// A tensor in kg m^2, sensor axes, with its uncertainty.
 #[pyclass(frozen, module = "polhode")]
 pub(crate) struct MeasuredBody(fits::MeasuredBody);
 
@@ -63,7 +63,7 @@ impl MeasuredBody {
     }
 }
 
-/// What a joint fit of carrier, proof body and object tells.
+/// The answer of `fit_carrier`.
 #[pyclass(frozen, module = "polhode")]
 pub(crate) struct CarrierEstimate {
     found: fits::CarrierEstimate,
@@ -80,32 +80,32 @@ impl CarrierEstimate {
         MeasuredBody(self.found.carrier.clone())
     }
 
-    /// What the object adds to it: its tensor with the parallel-axis term; `None` without an object.
+    /// What the object adds to the carrier: its tensor with the parallel-axis term; `None` without an object.
     #[getter]
     fn object(&self) -> Option<MeasuredBody> {
         self.found.object.clone().map(MeasuredBody)
     }
 
-    /// The object about its own centre of mass, where its mass and place were given.
+    /// The object about its own centre of mass; `None` unless its mass and place were given.
     #[getter]
     fn object_itself(&self) -> Option<MeasuredBody> {
         self.found.object_itself.clone().map(MeasuredBody)
     }
 
-    /// Moment of inertia of the wheel about its axis and its standard deviation, kg m^2, where it was to be found.
+    /// Moment of inertia of an unknown wheel about its axis, and its standard deviation, kg m^2.
     #[getter]
     fn wheel(&self) -> Option<(f64, f64)> {
         self.found.wheel.map(|wheel| (wheel.inertia, wheel.sigma))
     }
 
-    /// Covariance of the entries xx, yy, zz, xy, xz, yz of the carrier, those of what the object adds, and the wheel, (kg m^2)^2.
+    /// Joint covariance, (kg m^2)^2: the entries xx, yy, zz, xy, xz, yz of the carrier, those of what the object adds, then the wheel.
     #[getter]
     fn covariance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let m = &self.found.covariance;
         array(py, m.transpose().as_slice().to_vec(), &[m.nrows(), m.ncols()])
     }
 
-    /// What gives the size of the carrier: a dict by source of the relative standard deviation of its trace by that source alone.
+    /// What gives the size of the carrier: for each source the relative standard deviation of the trace from that source alone.
     #[getter]
     fn sizes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let found = PyDict::new(py);
@@ -115,25 +115,25 @@ impl CarrierEstimate {
         Ok(found)
     }
 
-    /// Chi squared of the records about the answer, and its degrees of freedom.
+    /// Agreement of the records: chi squared about the answer, and its degrees of freedom.
     #[getter]
     fn agreement(&self) -> (f64, usize) {
         (self.found.agreement.chi2, self.found.agreement.dof)
     }
 
-    /// Standard deviations by which the physical law moved the answer.
+    /// By how many standard deviations the triangle inequalities moved the answer.
     #[getter]
     fn pull(&self) -> f64 {
         self.found.pull
     }
 
-    /// What was estimated of the sensor from all records: a dict by name of `value`, `sigma`, `unit`, `prior`.
+    /// Errors of the sensor, estimated from all records: a dict by name, each with `value`, `sigma`, `unit`, `prior`.
     #[getter]
     fn nuisances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         named(py, &self.found.nuisances)
     }
 
-    /// Each record by itself: a dict by what tumbled.
+    /// The fit of each record by itself: a dict by what tumbled.
     #[getter]
     fn records<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
@@ -148,7 +148,7 @@ impl CarrierEstimate {
         Ok(all)
     }
 
-    /// What limits the use of the estimate, a sentence each; Python warnings say the same.
+    /// What limits the use of the estimate: sentences, which are also Python warnings.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.warnings.clone()
@@ -169,15 +169,20 @@ impl CarrierEstimate {
     }
 }
 
-/// Absolute tensors of a carrier and of an object on it, from records of one sensor on the carrier: alone, with a proof body whose mass
-/// properties are known (`proof`), with the object (`object`), and with both (`object_proof`).
+/// Tensors in kg m^2 of a carrier and of an object on it, from records of one sensor that is fixed to the carrier.
 ///
-/// Each record is a `Record` of `read`, a list of them, or a tuple of times, s, and `rates` (n, 3), rad/s, with angular momenta of a wheel
-/// (n, 3), N m s, as a third member where one turns. The flights of a record that is not free as a whole are found. `proof_body`: what it adds to the carrier's tensor, kg m^2, three moments or (3, 3); or
-/// its mass properties, whose centre of mass is counted from that of the carrier, with `carrier_mass`, kg. `proof_sigma`: relative standard
-/// deviation of what it adds; exact without. `object_mass`, kg, and `object_at`, m, its centre of mass from that of the carrier: gives
-/// its tensor about its own centre of mass, too. `unknown_wheel`: the momenta are the axis times the speed of a wheel, rad/s, whose inertia is
-/// found. The others are those of `fit`. Source: the parallel-axis theorem about the common centre of mass.
+/// - `carrier`, `proof`, `object`, `object_proof`: records of the carrier alone, with a proof body whose mass properties are known, with the
+///   object, and with both. Each is a `Record` of `read`, a list of them, or a tuple of times, s, and rates (n, 3), rad/s. If a wheel turns,
+///   the tuple has its angular momenta (n, 3), N m s, as a third member. Flights in a record that is not free throughout are found.
+/// - `proof_body`: the tensor that the proof body adds to that of the carrier, kg m^2, as three moments or (3, 3); or its mass properties,
+///   with the centre of mass relative to that of the carrier, and `carrier_mass`, kg. `proof_sigma`: relative standard deviation of what it
+///   adds; without it the proof body counts as exact.
+/// - `object_mass`, kg, and `object_at`, its centre of mass relative to that of the carrier, m, together with `carrier_mass`: the answer then
+///   also has the tensor of the object about its own centre of mass.
+/// - `unknown_wheel`: the third member of a tuple is the axis of a wheel times its speed, rad/s, and the moment of inertia of the wheel is
+///   estimated.
+///
+/// All other arguments are those of `fit`.
 ///
 /// >>> import numpy, polhode
 /// >>> t, random = numpy.arange(1000) * 0.01, numpy.random.default_rng(1)

@@ -20,10 +20,12 @@ use crate::states::States;
 
 /// Bodies with their starts, propagated together on all cores. Members do not act on each other.
 ///
-/// `body` is one for all, as `Body` takes it, with its forces; or `moments` (n, 3) or `tensors` (n, 3, 3) are those of each member.
-/// `omega`, rad/s, or `momentum`, kg m^2/s, body axes: (n, 3), or (3,) for all; `attitude`: (n, 4), or (4,) for all, or a scipy rotation;
-/// without one that of the published motion of a body of the catalogue, else the identity. `threads`: how many at most; 0 for one on each
-/// core.
+/// - `body`: one body for all members, as `Body` takes it, with its forces; or in its place `moments` (n, 3) or `tensors` (n, 3, 3), those of
+///   each member.
+/// - `omega`, rad/s, or `momentum`, kg m^2/s, in body axes: (n, 3), or (3,) for all members.
+/// - `attitude`: (n, 4), or (4,) for all members, or a scipy rotation. Without it members start with the attitude that the catalogue has of
+///   `body`, else with the identity.
+/// - `threads`: largest number of threads; 0 means one for each core.
 ///
 /// >>> import numpy, polhode
 /// >>> omega = [0.4, 1, -0.3] + numpy.random.default_rng(1).normal(0, 0.01, (1000, 3))
@@ -148,7 +150,7 @@ impl Ensemble {
         Ok(Ensemble { members: Arc::new(members), body, order, speed })
     }
 
-    /// The exact motion of every member at `times`, s, of either sign: attitudes (times, members, 4), angular velocities (times,
+    /// The exact motion of every member at `times`, s, of either sign: attitudes (times, members, 4) and angular velocities (times,
     /// members, 3). `progress` is called as `progress(stage, done, seconds)` some times a second, and at the end.
     #[pyo3(signature = (times, *, progress = None))]
     fn at(
@@ -169,7 +171,7 @@ impl Ensemble {
         self.finished(py, found, times)
     }
 
-    /// Every member at `times`, s, ascending from `start_time` on, each a whole number of steps of `step`, s, by `method`.
+    /// Every member moved by `method` in steps of `step`, s, to `times`, s, which ascend from `start_time` on by whole numbers of steps.
     #[pyo3(signature = (method, *, times, step, start_time = 0.0, progress = None))]
     fn run(
         &self,

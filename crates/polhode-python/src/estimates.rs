@@ -13,7 +13,7 @@ use crate::error::refused;
 use crate::parts;
 use crate::shown;
 
-/// A fitted tensor and how far to trust it. Moments are shares of the trace, as free motion tells no size.
+/// A fitted tensor with its uncertainty. Moments are shares of the trace, as free motion does not determine the size of the tensor.
 #[pyclass(frozen, module = "polhode")]
 pub(crate) struct Estimate {
     pub(crate) found: fits::Estimate,
@@ -55,7 +55,7 @@ impl Estimate {
         array(py, self.found.principal.to_vec(), &[3])
     }
 
-    /// Their standard deviations by the noise.
+    /// Standard deviations of the principal moments that the noise causes, as shares of the trace.
     #[getter]
     fn sigma_principal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         array(py, self.found.sigma_principal.to_vec(), &[3])
@@ -68,19 +68,19 @@ impl Estimate {
         array(py, vec![q.w, q.i, q.j, q.k], &[4])
     }
 
-    /// Standard deviations of the turn about each principal axis, rad; infinite where two moments agree.
+    /// Standard deviations of the rotation about each principal axis, rad; infinite where two moments are equal.
     #[getter]
     fn sigma_axes<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         array(py, self.found.sigma_axes.to_vec(), &[3])
     }
 
-    /// I1/I3 and I2/I3.
+    /// The ratios I1/I3 and I2/I3.
     #[getter]
     fn ratios<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         array(py, self.found.ratios.to_vec(), &[2])
     }
 
-    /// Their standard deviations.
+    /// Standard deviations of the ratios.
     #[getter]
     fn sigma_ratios<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         array(py, self.found.sigma_ratios.to_vec(), &[2])
@@ -92,19 +92,19 @@ impl Estimate {
         six(py, &self.found.covariance)
     }
 
-    /// The Cramer-Rao bound on it; `None` where there is none.
+    /// The Cramer-Rao bound on this covariance; `None` where it is not computed.
     #[getter]
     fn bound<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.found.bound.as_ref().map(|bound| six(py, bound)).transpose()
     }
 
-    /// Absolute tensor, kg m^2, sensor axes; `None` where nothing gives its size.
+    /// The tensor in kg m^2, sensor axes; `None` if nothing gives its size.
     #[getter]
     fn inertia<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.found.inertia.as_ref().map(|inertia| matrix(py, &inertia.tensor())).transpose()
     }
 
-    /// Covariance of its entries, (kg m^2)^2.
+    /// Covariance of the entries xx, yy, zz, xy, xz, yz of `inertia`, (kg m^2)^2.
     #[getter]
     fn inertia_covariance<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.found.inertia_covariance.as_ref().map(|covariance| six(py, covariance)).transpose()
@@ -116,7 +116,7 @@ impl Estimate {
         self.found.noise_sigma
     }
 
-    /// Mean square of the residuals over the noise.
+    /// Chi squared of the residuals per degree of freedom.
     #[getter]
     fn chi2_per_dof(&self) -> f64 {
         self.found.chi2_per_dof
@@ -128,19 +128,19 @@ impl Estimate {
         self.found.triangle_slack
     }
 
-    /// Number of samples of the segments that were long enough.
+    /// Number of samples that were fitted, in segments that are long enough.
     #[getter]
     fn samples(&self) -> usize {
         self.found.samples
     }
 
-    /// Number of those segments.
+    /// Number of segments that were fitted.
     #[getter]
     fn segments(&self) -> usize {
         self.found.segments
     }
 
-    /// Half width of the test functions, s; `None` of a maximum of likelihood.
+    /// Half width of the test functions of the weak form, s; `None` for a fit by maximum likelihood.
     #[getter]
     fn radius(&self) -> Option<f64> {
         self.found.radius
@@ -158,40 +158,42 @@ impl Estimate {
         self.found.identifiability.null_directions.iter().map(ToString::to_string).collect()
     }
 
-    /// Share of |dw/dt|^2 that the free motion of the answer leaves unexplained.
+    /// Share of the squared angular acceleration that free motion of this body leaves unexplained.
     #[getter]
     fn unexplained(&self) -> Option<f64> {
         self.found.unexplained
     }
 
-    /// The shape that explains the record as well if its axes are left-handed.
+    /// The tensor with trace 1 that explains the record equally well if the axes of the sensor are left-handed.
     #[getter]
     fn mirror<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.found.mirror.as_ref().map(|mirror| matrix(py, &mirror.tensor())).transpose()
     }
 
-    /// Standard deviations of its principal moments, ascending.
+    /// Standard deviations of the principal moments of `mirror`, ascending.
     #[getter]
     fn sigma_mirror<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.found.sigma_mirror.map(|sigmas| array(py, sigmas.to_vec(), &[3])).transpose()
     }
 
-    /// The change of each principal moment midway, as a share of the trace, up to which it may go unseen in this record; `None` where its halves
-    /// are not compared.
+    /// How large a change of each principal moment midway may go unseen in this record, as a share of the trace; `None` if its parts are not
+    /// compared.
     #[getter]
     fn unseen_change<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.found.unseen_change.map(|most| array(py, most.to_vec(), &[3])).transpose()
     }
 
-    /// The torque that the fit reckons with: a dict by coefficient of `value`, `sigma`, `unit`, `prior`.
+    /// The fitted torque: a dict by coefficient, each with `value`, `sigma`, `unit`, `prior`.
     #[getter]
     fn torque<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         named(py, &self.found.torque.coefficients)
     }
 
-    /// What each model of the torque makes of the record: a dict by model of `gain` (log-likelihood less that without a torque), `torque_noise` (whether
-    /// that has a level of torque noise, which may take the place of a torque), `share`,
-    /// `principal`, `sigma_principal`, `ratios`, `sigma_ratios`, `unexplained` and `held_out`; of a fit to attitudes in closed form those of no torque, drag and a small constant torque.
+    /// How well each model of the torque explains the record: a dict by model.
+    ///
+    /// Each has `gain` (log-likelihood less that without a torque), `torque_noise` (whether the model has a level of torque noise), `share` (its
+    /// Akaike weight), `principal`, `sigma_principal`, `ratios`, `sigma_ratios`, `unexplained`, and `held_out` (how well it predicts a segment
+    /// from the others). A fit of attitudes in closed form compares no torque, drag and a small constant torque.
     #[getter]
     fn models<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let found = PyDict::new(py);
@@ -211,10 +213,11 @@ impl Estimate {
         Ok(found)
     }
 
-    /// What errors of the sensor, and of the momentum of wheels, make of the record in the place of a torque: a dict by error (`misalignment`,
-    /// `axis-scales`, `offsets`, `delays`, `wheel-x`, `wheel-y`, `wheel-z`) of
-    /// `size` (rad, a ratio, rad/s, s), `gain`, `torque_noise`, `share`, `principal`, `sigma_principal` and `held_out` as of [`models`](Self::models); empty of a fit to
-    /// attitudes.
+    /// How well errors of the sensor, or of the momentum of wheels, explain the record without a torque: a dict by error (`misalignment`,
+    /// `axis-scales`, `offsets`, `delays`, `wheel-x`, `wheel-y`, `wheel-z`).
+    ///
+    /// Each has its `size` (rad, a ratio, rad/s or s), and `gain`, `torque_noise`, `share`, `principal`, `sigma_principal` and `held_out` as in
+    /// `models`. Empty for a fit of attitudes.
     #[getter]
     fn reading_errors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let found = PyDict::new(py);
@@ -232,13 +235,13 @@ impl Estimate {
         Ok(found)
     }
 
-    /// What was estimated of the sensor: a dict of the same kind.
+    /// The estimated errors of the sensor: a dict by error, each with `value`, `sigma`, `unit`, `prior`.
     #[getter]
     fn nuisances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         named(py, &self.found.nuisances)
     }
 
-    /// What errors of an uncalibrated sensor would do to the moments: a dict by error of `size`, `unit`, `principal`, `ratios`.
+    /// By how much errors of an uncalibrated sensor would move the moments: a dict by error, each with `size`, `unit`, `principal`, `ratios`.
     #[getter]
     fn systematic<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let found = PyDict::new(py);
@@ -253,22 +256,24 @@ impl Estimate {
         Ok(found)
     }
 
-    /// What was found of measured attitudes: a dict of `noise_sigma`, `residual` and `local_noise` (of one component of the rotation vector,
-    /// rad), `noise_given`, `largest_turn`, rad, `left_out` and `repeated` (numbers of samples), and, with rates beside them, `alignment`, the
-    /// rotation vector from the axes of the attitudes to those of the rates, rad, with `alignment_sigma`, and `moving`, by how much the axes
-    /// move against each other, rad, with `moving_gain`, the gain of log-likelihood; `None` of a fit to rates alone.
+    /// For a fit of attitudes, what was found about them; else `None`.
+    ///
+    /// A dict of `noise_sigma`, `residual` and `local_noise` (of each component of the rotation vector, rad), `noise_given`, `largest_turn`, rad,
+    /// `left_out` and `repeated` (numbers of samples). With rates beside the attitudes: `alignment`, the rotation vector from the axes of the
+    /// attitudes to those of the rates, rad, with `alignment_sigma`; and `moving`, by how much the two sets of axes turn against each other, rad,
+    /// with `moving_gain`, the gain of log-likelihood.
     #[getter]
     fn attitudes<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyDict>>> {
         self.found.attitudes.as_ref().map(|of| parts::attitudes(py, of)).transpose()
     }
 
-    /// Root mean square of the size of the rate, rad/s.
+    /// Root mean square of the size of the angular velocity, rad/s.
     #[getter]
     fn rms_rate(&self) -> f64 {
         self.found.rms_rate
     }
 
-    /// Step of each component of the readings, rad/s; 0 where there is none.
+    /// Step of the digital readings of each axis, rad/s; 0 if there is none.
     #[getter]
     fn quanta<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         array(py, self.found.quanta.to_vec(), &[3])
@@ -280,25 +285,25 @@ impl Estimate {
         self.found.method.words()
     }
 
-    /// How many of the five numbers of the shape the record determines.
+    /// How many of the five numbers of the tensor with trace 1 the record determines.
     #[getter]
     fn rank(&self) -> usize {
         self.found.identifiability.rank
     }
 
-    /// Standard deviations of the five combinations that the record determines, ascending, shares of the trace.
+    /// Standard deviations of the five independent combinations of its entries, ascending, as shares of the trace.
     #[getter]
     fn spectrum<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         array(py, self.found.identifiability.deviations.to_vec(), &[5])
     }
 
-    /// Standard deviation over the Cramer-Rao bound; `None` where there is none.
+    /// Ratio of the standard deviations to the Cramer-Rao bound; `None` where the bound is not computed.
     #[getter]
     fn bound_ratio(&self) -> Option<f64> {
         self.found.bound_ratio
     }
 
-    /// Constraints that hold the answer: a dict of `name` and `multiplier` for each.
+    /// Constraints that the answer lies on: a dict of `name` and `multiplier` for each.
     #[getter]
     fn active_constraints<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         let one = |of: &fits::ActiveConstraint| {
@@ -321,7 +326,7 @@ impl Estimate {
         Ok(entry)
     }
 
-    /// Standard deviations by which the physical law and limits moved the tensor.
+    /// By how many standard deviations the triangle inequalities and given limits moved the tensor.
     #[getter]
     fn pull(&self) -> f64 {
         self.found.pull
@@ -333,13 +338,13 @@ impl Estimate {
         self.found.dof
     }
 
-    /// Relative change of |J w| and its standard deviation, 1/s.
+    /// Relative drift of |J w| and its standard deviation, 1/s; J is the tensor and w the angular velocity.
     #[getter]
     fn momentum_drift(&self) -> Option<(f64, f64)> {
         self.found.momentum_trend.map(|trend| (trend.rate, trend.sigma))
     }
 
-    /// The same of twice the energy, w J w.
+    /// Relative drift of the energy and its standard deviation, 1/s.
     #[getter]
     fn energy_drift(&self) -> Option<(f64, f64)> {
         self.found.energy_trend.map(|trend| (trend.rate, trend.sigma))
@@ -351,13 +356,13 @@ impl Estimate {
         (self.found.whiteness.correlation, self.found.whiteness.sigma)
     }
 
-    /// The model of the torque that the fit reckons with.
+    /// The model of the torque that was fitted.
     #[getter]
     fn torque_model(&self) -> String {
         self.found.torque.model.to_string()
     }
 
-    /// Its gain of log-likelihood over no torque, where both were fitted.
+    /// Its gain of log-likelihood over no torque; `None` unless both were fitted.
     #[getter]
     fn torque_gain(&self) -> Option<f64> {
         self.found.torque.gain
@@ -369,28 +374,30 @@ impl Estimate {
         self.found.torque.ratios_without.map(|ratios| array(py, ratios.to_vec(), &[2])).transpose()
     }
 
-    /// Distance of the record from a prior tensor, chi squared, and its degrees of freedom.
+    /// Distance between record and prior tensor: chi squared, and its degrees of freedom; `None` without a prior.
     #[getter]
     fn prior(&self) -> Option<(f64, usize)> {
         self.found.prior.map(|of| (of.chi2, of.dof))
     }
 
-    /// Power spectral density of the angular acceleration that torque noise makes, the mean of its components, (rad/s^2)^2 s: the mean of the
+    /// Power spectral density of the angular acceleration that torque noise causes, (rad/s^2)^2 s: mean of the three components, and of the
     /// segments by their weights.
     #[getter]
     fn rho(&self) -> f64 {
         self.found.per_segment.iter().map(|s| s.torque_noise * s.weight).sum()
     }
 
-    /// What each segment contributes: a dict for each of `segment`, from 1, `samples`, `noise_sigma`, rad/s, `torque_noise`, (rad/s^2)^2 s,
-    /// `weight`, its share of the information, and what the others say: `ratios_without`, I1/I3 and I2/I3, `sigma_ratios_without`, and
-    /// `shift`, how far the tensor moves, in standard deviations.
+    /// What each segment contributes: a dict for each.
+    ///
+    /// It has `segment`, counted from 1, `samples`, `noise_sigma`, rad/s, `torque_noise`, (rad/s^2)^2 s, and `weight`, its share of the
+    /// information. The answer without this segment has the ratios `ratios_without`, I1/I3 and I2/I3, with `sigma_ratios_without`, and differs
+    /// from that of all segments by `shift` standard deviations.
     #[getter]
     fn per_segment<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         parts::per_segment(py, &self.found)
     }
 
-    /// Samples that were left out because they stand out of their neighbours: a dict for each of `segment`, from 1, `line` and `time`, s.
+    /// Samples that were left out because they jump off their neighbours: a dict for each, of `segment`, counted from 1, `line` and `time`, s.
     #[getter]
     fn spikes<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         parts::spikes(py, &self.found.spikes)
@@ -402,7 +409,7 @@ impl Estimate {
         six(py, &self.found.correlation())
     }
 
-    /// What would make the answer surer, a sentence each, the largest error first.
+    /// What to do next: sentences, that on the largest error first.
     #[getter]
     fn next_steps(&self) -> Vec<String> {
         self.found.next_steps().iter().map(ToString::to_string).collect()
@@ -414,7 +421,7 @@ impl Estimate {
         self.unused.clone()
     }
 
-    /// How the files of the record were read, as `Record.read_as`; empty of arrays, which are in rad/s and s.
+    /// In which units the files of the record were read, as `Record.read_as`; empty for arrays, which are in rad/s and s.
     #[getter]
     fn read_as<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         parts::read_as(py, &self.read_as)
@@ -426,13 +433,13 @@ impl Estimate {
         self.flights.iter().map(|flight| (flight.before.to_string(), flight.after.to_string())).collect()
     }
 
-    /// Start and end of each flight that was fitted, s; empty where windows were given.
+    /// Start and end of each flight that was fitted, s; empty if windows were given.
     #[getter]
     fn flights(&self) -> Vec<(f64, f64)> {
         self.flights.iter().map(|flight| (flight.start, flight.end)).collect()
     }
 
-    /// What limits the use of the estimate, a sentence each; Python warnings say the same.
+    /// What limits the use of the estimate: sentences, which are also Python warnings.
     #[getter]
     fn warnings(&self) -> Vec<String> {
         self.warnings.clone()

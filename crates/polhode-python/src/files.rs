@@ -74,8 +74,8 @@ impl Kind {
     }
 }
 
-/// What a file holds, by its ending or by `kind`; or a table in memory: a data frame, a structured array or a dict of columns, read by the
-/// names of its columns as a file is.
+/// Reads a file, by its ending or as the `kind` that is given; or a table in memory: a data frame, a structured array or a dict of columns,
+/// whose columns are found by their names, as in a file.
 ///
 /// | file | result |
 /// |---|---|
@@ -87,11 +87,14 @@ impl Kind {
 /// | a table of angular velocities, `kind="record"` | `Record` |
 /// | `kind="times"` | array of times, s; dates are counted from the date `epoch` |
 ///
-/// Of tables: `columns` names columns as `"t=clock,wx=gx,wy=gy,wz=gz"`; `time_unit` (`s`, `ms`, `us`, `ns`, or seconds) and `rate_unit`
-/// (`rad/s`, `deg/s`, `rpm`) hold where the header names none; `sample_rate`, Hz, where a column counts samples. Of records: `axes` as
-/// `"x,-y,z"` and `skip_rows`, the share of rows that may be left out. Of meshes: `length_unit` (`mm`, `m`, ...), `close` (`fan`, `hull`),
-/// or `shell` (thickness of walls, m), `weld`, `group`. Of MJCF: `root`, the folder of its includes. What is given of another kind is
-/// refused.
+/// - Tables: `columns` names columns, as `"t=clock,wx=gx,wy=gy,wz=gz"`. `time_unit` ("s", "ms", "us", "ns", or a number of seconds) and
+///   `rate_unit` ("rad/s", "deg/s", "rpm") are used where the header names none. `sample_rate`, Hz, is for tables that count samples.
+/// - Records: `axes`, as "x,-y,z", renames and reverses columns of rates; `skip_rows` is the share of rows that may be left out as unreadable.
+/// - Meshes: `length_unit` ("mm", "cm", "m", "in", or metres); `close`, "fan" or "hull", closes holes; `shell`, the thickness of walls, m, is
+///   for a hollow body; `weld` merges vertices that are nearer than this share of the size; `group` takes one group of an OBJ file.
+/// - MJCF: `root`, the folder within which its includes must lie.
+///
+/// An argument that is not for this kind of file is refused.
 ///
 /// >>> import os, polhode, tempfile
 /// >>> path = os.path.join(tempfile.mkdtemp(), "record.csv")

@@ -19,23 +19,39 @@ use crate::scalars::maybe;
 use crate::tables::{Record, Trajectory as Read};
 use crate::units::positive;
 
-/// The inertia tensor, up to its size, of a body that rotates freely: from measured angular velocities in sensor axes, or from attitudes.
+/// The inertia tensor of a body that rotates freely, from measured angular velocities or attitudes.
 ///
-/// `t`: times, s, and `rates` (n, 3), rad/s; or in place of `t` a `Record` of `read`, or a list of records of one body. Without `windows`,
-/// pairs of times, the flights of a record that is not free as a whole are found. `wheel` (n, 3), N m s, and `applied_torque` (n, 3),
-/// N m: angular momentum of wheels and torque at the times, which give the tensor its size, as does one of `trace`, kg m^2,
-/// `momentum`, kg m^2/s, `twice_energy`, kg m^2/s^2, and `moment`, an axis x, y, z and the moment about it, kg m^2. `at_least` and `at_most`
-/// (n, 4): axes and the shares of the trace between which the moments about them are known to be. `torque`: what acts besides: `none`,
-/// `drag`, `drag3`, `quadratic`, `constant`, or `auto`, the simplest that the record does not contradict. `noise`, rad/s, and
-/// `radius`, s, are found where they are not given. `gyro_bias`, rad/s, `gyro_scale`, `gyro_axis_scales`, `gyro_misalignment`, rad,
-/// `gyro_skew`, s: standard deviations of errors of the sensor, estimated with these priors; `quantum`,
-/// rad/s, step of the readings. `prior`: a tensor that is known beforehand, or its moments, with `prior_sigma`, the relative standard
-/// deviation of its entries; `prior_shape`: only its shape is known. `trust_units`: fit even if other units explain the record
-/// better.
+/// Free rotation determines the tensor up to a factor: moments are then shares of the trace. Wheels, a known torque or one known number
+/// give it in kg m^2.
 ///
-/// `attitude`: measured attitudes at the times, body to space: quaternions (n, 4) in this `order`, or scipy rotations. They are fitted by
-/// maximum likelihood on the exact motion, or where torques ask for it by a Kalman filter and smoother, alone or with `rates` at the same times, whose axes may be turned against those of the attitudes;
-/// `attitude_noise`, rad, is the standard deviation of one component of their rotation vector, found where it is not given.
+/// What was measured:
+///
+/// - `t`: times, s. In place of `t` and `rates`: a `Record` of `read`, or a list of records of one body.
+/// - `rates`: angular velocities (n, 3), rad/s, in sensor axes.
+/// - `attitude`: attitudes, body to space: quaternions (n, 4) in the order `order`, or a scipy rotation. They are fitted by maximum
+///   likelihood on the exact motion or, under larger torques, by a Kalman filter and smoother. With `rates` at the same times both are
+///   fitted; the two may have axes of their own.
+/// - `windows`: pairs of times, s, that are fitted. Without it the flights in a record of rates that is not free throughout are found.
+/// - `wheel`: angular momenta of wheels (n, 3), N m s; `applied_torque`: known torques (n, 3), N m. Both go with `rates`.
+///
+/// What is known of the tensor:
+///
+/// - one of `trace`, kg m^2; `momentum` (|L|), kg m^2/s; `twice_energy`, kg m^2/s^2; and `moment`, as `[x, y, z, I]`: the moment I, kg m^2,
+///   about the axis x, y, z.
+/// - `at_least`, `at_most`: rows `[x, y, z, share]`, limits of the moment about an axis as a share of the trace.
+/// - `prior`: a tensor known beforehand, for instance from CAD, with `prior_sigma`, the relative standard deviation of its entries. With
+///   `prior_shape=True` only its ratios are used.
+///
+/// Torques, noise and errors of the sensor:
+///
+/// - `torque`: model of an unknown torque: "none", "drag", "drag3", "quadratic", "constant", or "auto", the simplest that the record does
+///   not contradict.
+/// - `noise`: standard deviation of the rates, rad/s; `attitude_noise`: that of each component of the rotation vector of an attitude, rad;
+///   `quantum`: step of digital readings, rad/s. Each is found in the record if it is not given.
+/// - `gyro_bias`, rad/s, `gyro_scale`, `gyro_axis_scales`, `gyro_misalignment`, rad, and `gyro_skew`, s: prior standard deviations of errors
+///   of the sensor, which are then estimated with the tensor.
+/// - `radius`: half width of the test functions of the weak form, s; rarely needed.
+/// - `trust_units`: fit even if other units explain the record better.
 ///
 /// >>> import numpy, polhode
 /// >>> t = numpy.arange(4000) * 0.01

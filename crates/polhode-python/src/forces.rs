@@ -11,7 +11,7 @@ use crate::calm::called;
 use crate::error::{of, refused};
 use crate::scalars::number;
 
-/// A torque or a potential that acts on a body; all add up.
+/// A torque or a potential that acts on a body. Several forces add up.
 #[pyclass(frozen, module = "polhode", from_py_object)]
 #[derive(Clone)]
 pub(crate) struct Force {
@@ -54,7 +54,7 @@ impl Force {
         self.force.name()
     }
 
-    /// The same force, acting only during intervals [begin, end), s: an array of shape (n, 2). Steps of a run end there.
+    /// The same force, acting only during `intervals`, rows of begin and end, s: shape (n, 2). Steps of a run end there.
     fn during(&self, intervals: &Bound<'_, PyAny>) -> PyResult<Self> {
         let intervals: Vec<[f64; 2]> = Numbers::of("intervals", intervals)?.rows(None)?;
         let force = self.force.clone().during(intervals).map_err(of("intervals"))?;
@@ -75,7 +75,7 @@ fn vector(name: &'static str, value: &Bound<'_, PyAny>) -> PyResult<Vector3<f64>
     Numbers::of(name, value)?.vector()
 }
 
-/// Uniform gravity along -z of space on a body with a fixed point: weight times centre of mass, N m, body axes.
+/// Uniform gravity along -z of space on a body with a fixed point. `weight_moment` is the weight times the centre of mass, N m, body axes.
 ///
 /// >>> from polhode import Body, gravity
 /// >>> Body([1, 1, 0.25], [gravity([0, 0, 2])])
@@ -85,7 +85,7 @@ pub(crate) fn gravity(weight_moment: &Bound<'_, PyAny>) -> PyResult<Force> {
     body::Force::gravity(vector("weight_moment", weight_moment)?).map(Force::from).map_err(refused)
 }
 
-/// The gravity gradient on an orbit with the mean motion, rad/s, in the x-y plane of space, perigee on +x at t = 0.
+/// The gravity gradient on an elliptic orbit in the x-y plane of space: mean motion, rad/s, and eccentricity; perigee on +x at t = 0.
 #[pyfunction]
 #[pyo3(signature = (mean_motion, eccentricity = 0.0))]
 pub(crate) fn gravity_gradient(
@@ -95,9 +95,11 @@ pub(crate) fn gravity_gradient(
     body::Force::gravity_gradient(mean_motion, eccentricity).map(gradient).map_err(refused)
 }
 
-/// The gravity gradient on a conic about a mass with the gravitational parameter gm, m^3/s^2: least distance from its centre, m,
-/// eccentricity (below 1 an ellipse, 1 a parabola, above 1 a hyperbola), the time of the least distance, s, and the plane in space:
-/// longitude of the node, inclination and argument of the periapsis, rad, by default the x-y plane with the least distance on +x.
+/// The gravity gradient on any conic: an ellipse, a parabola or a hyperbola.
+///
+/// `gm`: gravitational parameter of the attracting mass, m^3/s^2; `periapsis`: least distance from its centre, m; `time`: when the body is
+/// there, s; `plane`: longitude of the node, inclination and argument of the periapsis, rad, by default the x-y plane of space with the
+/// periapsis on +x.
 ///
 /// >>> from polhode import Body, gravity_gradient_on_conic
 /// >>> flyby = gravity_gradient_on_conic(3.986e14, 3.8e7, 4.2, time=86400, plane=[0.3, 0.8, 1.1])
@@ -122,9 +124,10 @@ pub(crate) fn gravity_gradient_on_conic(
     orbit.map(|orbit| gradient(body::Force::gravity_gradient_on(orbit))).map_err(refused)
 }
 
-/// The gravity gradient on an orbit by its places (n, 3), m, axes of space, at the ascending times `t`, s, about a mass with the
-/// gravitational parameter gm, m^3/s^2: a polynomial through the eight nearest rows, of which there are eight at least. A run that leaves
-/// the table is refused.
+/// The gravity gradient on an orbit that is a table of positions, interpolated by polynomials through eight rows.
+///
+/// `gm`: gravitational parameter of the attracting mass, m^3/s^2; `t`: ascending times, s, at least eight; `places` (n, 3): positions, m, in
+/// the axes of space. A run that leaves the table is refused.
 ///
 /// >>> import numpy
 /// >>> from polhode import Body, gravity_gradient_on_table
@@ -144,19 +147,19 @@ pub(crate) fn gravity_gradient_on_table(
     orbit.map(|orbit| gradient(body::Force::gravity_gradient_on(orbit))).map_err(refused)
 }
 
-/// A torque constant in body axes, N m.
+/// A torque that is constant in body axes, N m.
 #[pyfunction]
 pub(crate) fn torque_body(torque: &Bound<'_, PyAny>) -> PyResult<Force> {
     body::Force::constant_torque_body(vector("torque", torque)?).map(Force::from).map_err(refused)
 }
 
-/// A torque constant in the axes of space, N m.
+/// A torque that is constant in the axes of space, N m.
 #[pyfunction]
 pub(crate) fn torque_space(torque: &Bound<'_, PyAny>) -> PyResult<Force> {
     body::Force::constant_torque_space(vector("torque", torque)?).map(Force::from).map_err(refused)
 }
 
-/// Drag: the torque -linear w - quadratic |w| w of the angular velocity w; N m s and N m s^2.
+/// Drag: the torque -linear w - quadratic |w| w, where w is the angular velocity; N m s and N m s^2.
 #[pyfunction]
 #[pyo3(signature = (linear, quadratic = 0.0))]
 pub(crate) fn drag(
@@ -170,10 +173,11 @@ fn law_of(value: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
     called("torque", "torque(t, attitude, omega)", value)
 }
 
-/// A torque, N m, body axes, by a function `torque(t, attitude, omega)` of the time, s, the attitude w, x, y, z, body to space, and
-/// the angular velocity, rad/s, body axes. Equal arguments must give equal values.
+/// A torque of your own: `torque(t, attitude, omega)` returns it in N m, body axes.
 ///
-/// Each evaluation calls Python: some thousand times as slow as a force by name. An exception ends the run and is raised by it.
+/// Its arguments are the time, s, the attitude w, x, y, z, body to space, and the angular velocity, rad/s, body axes. Equal arguments must
+/// give equal values. Each evaluation calls Python, which is some thousand times slower than the forces of this package. An exception ends
+/// the run and is raised again by it.
 ///
 /// >>> import polhode
 /// >>> brake = polhode.force("brake", lambda t, attitude, omega: -0.1 * omega)

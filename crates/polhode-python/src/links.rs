@@ -15,7 +15,7 @@ use crate::error::refused;
 use crate::masses::MassProperties;
 use crate::scalars::maybe;
 
-/// A body as a file or an array states it, with what the examination of its tensor found.
+/// A body as a file or an array states it, with the verdict on its tensor.
 #[pyclass(frozen, module = "polhode")]
 pub(crate) struct Link(pub(crate) Examined);
 
@@ -28,7 +28,7 @@ impl Link {
 
 #[pymethods]
 impl Link {
-    /// Its name; empty of a tensor that was typed.
+    /// Its name; empty for a tensor that was given as an array.
     #[getter]
     fn name(&self) -> String {
         self.0.name()
@@ -40,19 +40,19 @@ impl Link {
         self.0.worth().name()
     }
 
-    /// Which law is broken and by how much.
+    /// Which law the tensor violates, and by how much; `None` if it is valid.
     #[getter]
     fn trouble(&self) -> Option<String> {
         self.0.trouble()
     }
 
-    /// The probable cause, or the two between which nothing decides.
+    /// The probable cause, or two that are equally likely.
     #[getter]
     fn cause(&self) -> Option<String> {
         self.0.cause()
     }
 
-    /// The tensor without the mistake that is the likeliest cause; `None` where there is none.
+    /// The tensor without its probable mistake; `None` if no cause was found.
     #[getter]
     fn corrected<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         let first = self.0.diagnosis.as_ref().and_then(|found| found.causes.first());
@@ -77,7 +77,7 @@ impl Link {
         array(py, self.0.given.center_of_mass.as_slice().to_vec(), &[3])
     }
 
-    /// Tensor about the centre of mass, kg m^2, in the axes of the frame; of an invalid one in its own.
+    /// Tensor about the centre of mass, kg m^2, in the axes of the frame; an invalid tensor is in its own axes.
     #[getter]
     fn tensor<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let found: Matrix3<f64> = self.0.body.map_or(self.0.given.tensor, |body| body.tensor());
@@ -93,7 +93,7 @@ impl Link {
         moments.map(|moments| array(py, moments.to_vec(), &[3])).transpose()
     }
 
-    /// What a body of it has; refused of an invalid one.
+    /// Mass, centre of mass and tensor; refused if the tensor is invalid.
     #[getter(properties)]
     fn mass_properties(&self) -> PyResult<MassProperties> {
         if self.0.given.mass.is_none() {
@@ -117,10 +117,10 @@ impl Link {
     }
 }
 
-/// What is wrong with a tensor, and what probably happened: entries I_xy = -int x y dm about the centre of mass, kg m^2.
+/// What is wrong with a tensor, and the probable cause. Entries are I_xy = -int x y dm about the centre of mass, kg m^2.
 ///
-/// All else is optional and narrows the causes down: the mass, kg; the centre of mass as seen from the origin of the frame, m; the
-/// edges of the box around the body along the axes of the tensor, m.
+/// All else is optional and helps to find the cause: `mass`, kg; `center_of_mass`, from the origin of the frame, m; `extents`, the edges of the
+/// bounding box along the axes of the tensor, m.
 ///
 /// >>> from polhode import diagnose
 /// >>> found = diagnose([[0.75, 0.3125, 0.3125], [0.3125, 0.75, 0.3125], [0.3125, 0.3125, 0.75]])
@@ -142,7 +142,7 @@ pub(crate) fn diagnose(
     Examined::of(given, None).map(Link).map_err(refused)
 }
 
-/// The links of a robot model, or the bodies of a file, by name and by number.
+/// The links of a robot model, or the bodies of a file: by name, as in `links["forearm"]`, or by number.
 #[pyclass(frozen, module = "polhode")]
 pub(crate) struct Links(pub(crate) Vec<Py<Link>>);
 

@@ -13,7 +13,7 @@ use crate::scalars::{maybe, number};
 
 /// Mass, kg, centre of mass, m, and inertia tensor about it, kg m^2, in the axes of one frame. Points, rods and plates have them too.
 ///
-/// `tensor` is about the centre of mass, with entries I_xy = -int x y dm.
+/// `tensor` is about the centre of mass unless `about` names another point, m; its entries are I_xy = -int x y dm.
 ///
 /// >>> from polhode import solid
 /// >>> bar = solid("cylinder", [0.005, 0.08], density=2700)
@@ -64,7 +64,7 @@ impl MassProperties {
         matrix(py, &self.0.tensor())
     }
 
-    /// Tensor about the point, m, kg m^2.
+    /// Tensor about `point`, m, in kg m^2.
     fn tensor_about<'py>(&self, point: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let tensor = self.0.tensor_about(Numbers::of("point", point)?.vector()?).map_err(of("point"))?;
         matrix(point.py(), &tensor)
@@ -83,7 +83,7 @@ impl MassProperties {
         array(py, vec![q.w, q.i, q.j, q.k], &[4])
     }
 
-    /// What the moments say of the shape, in one word.
+    /// What the moments say of the shape: `point`, `linear`, `planar`, `asymmetric`, `prolate`, `oblate` or `spherical`.
     #[getter]
     fn shape(&self) -> &'static str {
         self.0.class().name()
@@ -131,11 +131,11 @@ pub(crate) fn amount(mass: Option<f64>, density: Option<f64>) -> PyResult<Amount
     }
 }
 
-/// A homogeneous shape of closed form, m: its symmetry axis is z, a rod lies along z.
+/// Mass properties of a homogeneous shape. Sizes are in m; the symmetry axis, and a rod, lie along z.
 ///
-/// `box` [LX, LY, LZ], `ellipsoid` [A, B, C] (semi-axes), `sphere` [R], `shell` [R], `cylinder` [R, H], `tube` [R1, R2, H], `cone` [R, H],
-/// `torus` [R, r], `rod` [L], `disk` [R], `plate` [LX, LY], `hoop` [R], `capsule` [R, L]; a mass, kg, or a density, kg/m^3 of a solid,
-/// kg/m^2 of a surface, kg/m of a line.
+/// Shapes and `sizes`: `box` [LX, LY, LZ], `ellipsoid` [A, B, C] (semi-axes), `sphere` [R], `shell` [R], `cylinder` [R, H], `tube` [R1, R2, H],
+/// `cone` [R, H], `torus` [R, r], `rod` [L], `disk` [R], `plate` [LX, LY], `hoop` [R], `capsule` [R, H] (H without the caps). Give `mass`, kg, or
+/// `density`: kg/m^3 of a solid, kg/m^2 of a surface, kg/m of a line.
 ///
 /// >>> from polhode import solid
 /// >>> solid("box", [0.1467, 0.0715, 0.0077], mass=0.164).principal_moments * 1e6
@@ -163,9 +163,11 @@ pub(crate) fn closing(name: Option<&str>) -> PyResult<Option<Closing>> {
     }
 }
 
-/// What a mesh of triangles encloses: vertices of shape (n, 3), m, and the indices of corners of shape (m, 3), counterclockwise as
-/// seen from outside; what is mended, as triangles that are turned over, is said by a warning. An open mesh is refused, unless `close` says
-/// how its holes are closed, by a `fan` each or by the convex `hull` of all. Files are read by `read`.
+/// Mass properties of the body that a mesh of triangles encloses.
+///
+/// `vertices` (n, 3), m, and `triangles` (m, 3), the indices of their corners, counterclockwise as seen from outside; with `mass`, kg, or
+/// `density`, kg/m^3. A warning says what was mended, such as triangles that were turned over. An open mesh is refused unless `close` says how
+/// to close it: "fan" closes each hole by triangles from its middle, "hull" takes the convex hull. `read` reads files of meshes.
 ///
 /// >>> from polhode import mesh
 /// >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]

@@ -99,10 +99,12 @@ motion!(flow::GyrostatMotion);
 
 /// The motion of a free body from one start: its exact attitude and angular velocity at any time.
 ///
-/// `inertia` is three principal moments, a tensor, or anything that `Body` takes; the start is the attitude (default: the
-/// identity; a quaternion of any norm, or a scipy rotation) and the angular velocity `omega`, rad/s, or the angular momentum
-/// `momentum`, kg m^2/s, body axes. What is not given of a body of the catalogue is that of its published motion. `order` is that of
-/// quaternions, given and returned.
+/// - `inertia`: three principal moments, a tensor, or anything else that `Body` takes.
+/// - `omega`, rad/s, or `momentum`, kg m^2/s: angular velocity or angular momentum at t = 0, body axes.
+/// - `attitude`: attitude at t = 0, body to space: a quaternion of any norm but zero, or a scipy rotation; by default the identity.
+/// - `order`: order of quaternions, given and returned.
+///
+/// For a body of the catalogue, what is not given is that of its published motion.
 ///
 /// >>> from polhode import FreeMotion
 /// >>> motion = FreeMotion([1, 2, 3], [0.4, 1, -0.3])
@@ -169,12 +171,14 @@ impl FreeMotion {
         Ok((states, derivative))
     }
 
-    /// The covariance of the state at `t` from that of the start, by the derivative: a pair of an array (..., 6, 6), rows and columns the
-    /// rotation vector and the angular velocity, and of the nonlinearity (...): what the first order leaves out, as a share of the angle.
-    /// Below 0.1 the covariance can be used; above, an `Ensemble` tells the truth.
+    /// The covariance of the state at `t`, propagated from that of the start by the derivative of the motion.
+    ///
+    /// Returns a pair: an array (..., 6, 6) for rotation vector and angular velocity, and the nonlinearity (...), an estimate of the share of the
+    /// spread that the first order leaves out. If it is small, say below 0.1, the covariance can be used; otherwise use an `Ensemble`.
     ///
     /// `covariance` is that of rotation vector, angular velocity and the entries xx, yy, zz, xy, xz, yz of the tensor at t = 0: (12, 12), or
-    /// (6, 6) where the tensor is known. `torque`: (3, 3), the spectral density of a white torque in body axes, (N m)^2 s.
+    /// (6, 6) if the tensor is known. `torque`: (3, 3), spectral density of a white torque in body axes, (N m)^2 s. `axes`, "space" or "body", are
+    /// those of the rotation vectors.
     ///
     /// >>> import numpy, polhode
     /// >>> motion = polhode.FreeMotion([1, 2, 3], [0.4, 1, -0.3])
@@ -310,13 +314,13 @@ impl FreeMotion {
         Ok(FittedMotion { found: found.map_err(refused)?, order })
     }
 
-    /// The largest |t| at which the phase still has digits, s.
+    /// The largest |t|, s, at which the attitude can still be computed.
     #[getter]
     fn reach(&self) -> f64 {
         self.motion.reach()
     }
 
-    /// How often the body flips between the start and the time `t`, s.
+    /// How often the body turns over between the start and the time `t`, s.
     fn flips(&self, #[pyo3(from_py_with = number::t)] t: f64) -> PyResult<u64> {
         self.motion.at(t).map(|_| self.motion.flips(Dd::from(t))).map_err(of("t"))
     }

@@ -11,7 +11,7 @@ use crate::runs::named;
 use crate::scalars::number;
 use crate::units::finite;
 
-/// How fast the attitude error of a method grows: a shift in time along the polhode, and a twist about L.
+/// How fast the attitude error of a method grows: as a shift in time along the polhode, and as a twist about L.
 ///
 /// >>> import polhode
 /// >>> drift = polhode.phase("two-turn", [1, 2, 3], [0.4, 1, -0.3], step=0.01)
@@ -22,7 +22,7 @@ pub(crate) struct PhaseDrift(Drift);
 
 #[pymethods]
 impl PhaseDrift {
-    /// Growth of the shift per time, s/s.
+    /// Growth of the shift in time, s/s.
     #[getter]
     fn shift(&self) -> f64 {
         self.0.shift()
@@ -34,14 +34,14 @@ impl PhaseDrift {
         self.0.twist()
     }
 
-    /// The share of the growth that is in doubt: two parts of the short run differ by it.
+    /// Relative uncertainty of the growth: the difference between two parts of the short run.
     #[getter]
     fn doubt(&self) -> f64 {
         self.0.doubt()
     }
 
     /// How the run departs from the exact motion after the time t, s: shift in time, s, twist about L, rad, and tilt off the polhode, rad,
-    /// with what oscillates of them.
+    /// with their oscillations.
     ///
     /// >>> import polhode
     /// >>> drift = polhode.phase("two-turn", [1, 2, 3], [0.4, 1, -0.3], step=0.1)
@@ -58,13 +58,13 @@ impl PhaseDrift {
         self.0.attitude_error(t).map_err(refused)
     }
 
-    /// The time to which it holds, s: infinite of a free body.
+    /// The time up to which the prediction holds, s; infinite for a free body.
     #[getter]
     fn holds_until(&self) -> f64 {
         self.0.holds_until()
     }
 
-    /// What rounding adds to the attitude after the time t, s, by order of magnitude, rad.
+    /// Order of magnitude of what rounding adds to the attitude error after the time t, s, rad.
     fn rounding(&self, #[pyo3(from_py_with = number::t)] t: f64) -> PyResult<f64> {
         Ok(self.0.rounding(finite("t", t)?))
     }
@@ -74,10 +74,10 @@ impl PhaseDrift {
     }
 }
 
-/// How fast the attitude error of `method` grows from the start of `body` with steps of `step` s, from one short run: of methods
-/// that keep energy and |m| of a free body within bounds. Under weak forces it holds to a time; strong ones are refused.
+/// How fast the attitude error of `method` grows, predicted from one short run in steps of `step`, s.
 ///
-/// The start is that of `FreeMotion`. `run(method + "+phase", ...)` takes it back at output.
+/// The method must keep energy and |m| of a free body within bounds. Under weak forces the prediction holds up to a time; strong forces are
+/// refused. The start is that of `FreeMotion`. `run(method + "+phase", ...)` corrects this error at output.
 ///
 /// >>> import polhode
 /// >>> drift = polhode.phase("rattle", [1, 2, 3], [0.4, 1, -0.3], step=0.01)

@@ -25,12 +25,16 @@ const PART: u64 = 4096;
 /// A run has fewer steps than this: a day or more of the fastest method.
 const MOST_STEPS: f64 = 1e12;
 
-/// The run of `body` by a method, sampled at `times`, s, ascending from `start_time` on.
+/// Moves `body` by a method to given times.
 ///
-/// `method` is a name of the catalogue, as `rk4`, `dmv:10` or `kick-drift@srkn-6b`, or `exact`, the closed form. `step`, s, is that of
-/// the method, with a warning where the body turns by more than 1 rad in it; methods that choose their steps take a `tolerance` and need
-/// no step. The start is that of `FreeMotion`. Without `errors` no step is watched and no exact motion worked out, which is the quicker.
-/// `progress` is called as `progress(stage, done, seconds)` some times a second, and at the end.
+/// - `method`: a name of the catalogue, such as "rk4", "dmv:10" or "kick-drift@srkn-6b" (see `methods`), or "exact", the closed form.
+/// - `omega`, `attitude`, `momentum`: the start, as of `FreeMotion`, at the time `start_time`, s. `order` is that of quaternions, given and
+///   returned.
+/// - `times`: s, ascending from `start_time` on; for "exact" in any order.
+/// - `step`: step of the method, s. Methods that choose their steps need none, and take a `tolerance`. A warning says if the body turns by more than
+///   1 rad in a step.
+/// - `errors`: with False no errors are computed, which is quicker.
+/// - `progress`: called as `progress(stage, done, seconds)` some times a second and at the end, such as `polhode.progress.bar`.
 ///
 /// >>> import polhode
 /// >>> run = polhode.run("rk4", [1, 2, 3], [0.4, 1, -0.3], times=[0, 500, 1000], step=0.1)
@@ -230,7 +234,7 @@ impl Asked<'_> {
     }
 }
 
-/// The names of the methods, in the order in which tables show them; other arguments and schemes may be put in place of those here.
+/// The names of the methods, in the order of the tables. A name may have another argument or scheme, such as "dmv:12" or "two-turn@suzuki-4".
 #[pyfunction]
 pub(crate) fn methods() -> Vec<String> {
     catalogue().iter().map(|method| method.name()).collect()

@@ -12,10 +12,10 @@ use crate::bodies::Body;
 use crate::error::refused;
 use crate::shown;
 
-/// A run at the times that were asked for: attitudes, angular velocities, and the largest errors of the invariants up to each.
+/// A run at the times that were asked for: attitudes, angular velocities, and the largest errors up to each time.
 ///
-/// Errors are relative; `None` where the motion does not conserve the quantity, or where nothing was watched. `attitude_error` is
-/// the angle to the exact attitude, rad; `None` where the motion has no closed form, or where nothing was watched.
+/// Errors are relative, except `attitude_error`, the angle to the exact attitude. An error is `None` if the motion does not conserve the
+/// quantity or has no closed form, and with `errors=False`.
 #[pyclass(frozen, module = "polhode")]
 pub(crate) struct Samples {
     pub(crate) method: String,
@@ -70,7 +70,7 @@ fn column<'py>(py: Python<'py>, values: &[Option<f64>]) -> PyResult<Option<Bound
 
 #[pymethods]
 impl Samples {
-    /// The method, as it was named.
+    /// Name of the method.
     #[getter]
     fn method(&self) -> &str {
         &self.method
@@ -130,25 +130,25 @@ impl Samples {
         column(py, &self.rows.errors[2])
     }
 
-    /// Largest error of the angular momentum about the vertical up to each time.
+    /// Largest relative error of the angular momentum along z of space up to each time, where its vector is not conserved.
     #[getter]
     fn momentum_z_error<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         column(py, &self.rows.errors[3])
     }
 
-    /// Largest error of Jacobi's constant up to each time.
+    /// Largest relative error of Jacobi's constant up to each time, with a gravity gradient on a circle.
     #[getter]
     fn jacobi_error<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         column(py, &self.rows.errors[4])
     }
 
-    /// Angle to the exact attitude at each time, rad.
+    /// Angle to the exact attitude at each time, rad; `None` for the method "exact".
     #[getter]
     fn attitude_error<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         column(py, &self.rows.attitude_error)
     }
 
-    /// How often the body has flipped up to each time; `None` where steps were not watched.
+    /// How often the body has turned over up to each time; `None` where steps are not watched: for "exact", with `+phase`, and with `errors=False`.
     #[getter]
     fn flips(&self) -> Option<Vec<u64>> {
         Some(self.rows.flips.clone())

@@ -8,7 +8,7 @@ use pyo3::types::{PyIterator, PyTuple};
 use crate::arrays::{Order, array, scipy_rotation};
 use crate::shown;
 
-/// Attitudes and angular velocities of one body: of one time, or of as many as were asked for.
+/// Attitudes and angular velocities at one time, or at an array of times.
 ///
 /// It unpacks as the pair `attitude, omega`.
 #[pyclass(frozen, module = "polhode")]

@@ -43,7 +43,7 @@ impl Rows {
     }
 }
 
-/// A trajectory of a file, with what its names claim of the convention: for `audit`.
+/// A trajectory from a file, with the convention that the names of its columns state, for `audit`.
 #[pyclass(frozen, module = "polhode")]
 pub(crate) struct Trajectory {
     pub(crate) file: String,
@@ -60,13 +60,13 @@ pub(crate) struct Trajectory {
 
 #[pymethods]
 impl Trajectory {
-    /// Name of the body, where the file has several.
+    /// Name of the body, if the file has several.
     #[getter]
     fn id(&self) -> Option<&str> {
         self.id.as_deref()
     }
 
-    /// Times, s, or counts of steps where the file tells no step.
+    /// Times, s; or counts of steps, if the file does not state the length of a step.
     #[getter]
     fn t<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         array(py, self.rows.times.clone(), &[self.rows.times.len()])
@@ -100,7 +100,7 @@ impl Trajectory {
         vectors(py, self.rows.momentum.as_deref())
     }
 
-    /// Lines above the header that begin with #, without that.
+    /// The lines above the header that begin with #, without the #.
     #[getter]
     fn comments(&self) -> Vec<String> {
         self.comments.clone()
@@ -124,7 +124,7 @@ fn vectors<'py>(py: Python<'py>, rows: Option<&[[f64; 3]]>) -> PyResult<Option<B
     rows.map(|rows| array(py, rows.as_flattened().to_vec(), &[rows.len(), 3])).transpose()
 }
 
-/// A record of measured angular velocities, in segments without gaps: for `fit`.
+/// A record of measured angular velocities, in segments without gaps, for `fit` and `attitude`.
 #[pyclass(frozen, module = "polhode", from_py_object)]
 #[derive(Clone)]
 pub(crate) struct Record {
@@ -158,8 +158,10 @@ impl Record {
         array(py, rates, &[n, 3])
     }
 
-    /// How its files were read: a dict for each of `file`, `rate_unit` and `time_unit`, what named them (`header`, `setting`, `layout` of the
-    /// file, `values`, or `none`: rad/s and s were taken), `sample_rate`, Hz, `axes` as they were set, and `taken_as_right_handed`.
+    /// In which units its files were read: a dict for each file.
+    ///
+    /// It has `file`, `rate_unit` and `time_unit`, and for each unit what named it: `header`, `setting`, `layout` of the file, `values`, or
+    /// `none` (rad/s and s were assumed). It also has `sample_rate`, Hz, `axes` as they were set, and `taken_as_right_handed`.
     #[getter]
     fn read_as<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         parts::read_as(py, &self.read_as)

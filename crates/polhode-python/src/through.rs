@@ -38,19 +38,19 @@ impl Passage {
         array(py, self.passage.omega_body.as_slice().to_vec(), &[3])
     }
 
-    /// Mean spin times the time between, in turns.
+    /// Number of turns between the attitudes: mean spin times the time between them.
     #[getter]
     fn turns(&self) -> f64 {
         self.passage.turns
     }
 
-    /// Angle between the attitude that it reaches and that asked for, rad.
+    /// Angle between the attitude that it reaches and the one asked for, rad.
     #[getter]
     fn miss(&self) -> f64 {
         self.passage.miss
     }
 
-    /// Whether the search that found it is known to have found all others.
+    /// Whether the search that found it is known to have found all motions.
     #[getter]
     fn complete(&self) -> bool {
         self.passage.complete
@@ -94,10 +94,11 @@ impl FittedMotion {
     }
 }
 
-/// The exact free motions between the attitudes of a table, the smoothest of all that turn at most `turns` times between neighbours.
+/// The exact free motion through the attitudes of a table. Between two rows, of all motions that turn at most `turns` times, the smoothest is
+/// taken.
 ///
-/// `inertia` is what `FreeMotion` takes; `t` ascends, s; `attitude` (n, 4), or a scipy rotation. A warning says where they are not those of
-/// one motion.
+/// `inertia` is what `FreeMotion` takes; the times `t`, s, ascend; `attitude` is (n, 4), or a scipy rotation. A warning says if the attitudes
+/// are not those of one free motion.
 ///
 /// >>> import numpy, polhode
 /// >>> t = numpy.arange(20.0)

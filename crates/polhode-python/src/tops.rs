@@ -10,10 +10,10 @@ use crate::error::of;
 use crate::motions::Motion;
 use crate::states::States;
 
-/// The motion of Lagrange's top from one start, a symmetric body with its weight on the axis: its exact attitude and angular velocity
-/// at any time.
+/// The motion of Lagrange's top, a symmetric body with a fixed point and its weight on the axis: its exact attitude and angular velocity at
+/// any time.
 ///
-/// `body` is one with the force `gravity`, or the name of a top of the catalogue; the start is that of `FreeMotion`.
+/// `body` has the force `gravity`, or is the name of a top of the catalogue. The start is given as for `FreeMotion`.
 ///
 /// >>> from polhode import Body, LagrangeTop, gravity
 /// >>> top = LagrangeTop(Body([1.25, 1.25, 0.75], [gravity([0, 0, 2])]), [0, 0, 20], [0.97, 0.24, 0, 0])
@@ -80,7 +80,7 @@ impl LagrangeTop {
         Ok((states, derivative))
     }
 
-    /// The largest |t| at which the phases still have digits, s.
+    /// The largest |t|, s, at which the attitude can still be computed.
     #[getter]
     fn reach(&self) -> f64 {
         self.top.reach()
@@ -92,7 +92,7 @@ impl LagrangeTop {
         array(py, self.top.turning_points().to_vec(), &[2])
     }
 
-    /// Time from one largest tilt to the next, s; `None` where the axis does not come back.
+    /// Time from one largest tilt to the next, s; `None` if the axis does not come back.
     #[getter]
     fn nutation_period(&self) -> Option<f64> {
         self.top.nutation_period()

@@ -15,11 +15,10 @@ use crate::scalars::{maybe, number};
 use crate::states::States;
 use crate::units::finite;
 
-/// A wheel, symmetric about its axis, that a body carries: `Body(inertia, wheels=[...])`. The inertia of the body includes it, at rest on
-/// the body.
+/// A wheel that a body carries, as `Body(inertia, wheels=[...])`. The inertia of the body includes its wheels, at rest on it.
 ///
-/// `axis` is in body axes, of any length; `inertia` about it in kg m^2; `speed` against the body in rad/s, held unless `free` or
-/// `driven` makes another wheel of it.
+/// `axis` is in body axes, of any length; `inertia` is about this axis, kg m^2; `speed` is relative to the body, rad/s. The speed is held
+/// constant: `free` and `driven` make a wheel that turns freely or is driven by a motor.
 ///
 /// >>> from polhode import Body, Wheel
 /// >>> wheel = Wheel([0, 0, 1], 0.05, 300)
@@ -53,13 +52,13 @@ impl Wheel {
         body::Wheel::new(vector("axis", axis)?, inertia, speed).map(Wheel).map_err(refused)
     }
 
-    /// The same wheel turning without friction: it has its speed where the body turns at `omega`, rad/s, body axes.
+    /// The same wheel, turning without friction. It has its speed when the body turns at `omega`, rad/s, body axes.
     fn free(&self, omega: &Bound<'_, PyAny>) -> PyResult<Self> {
         Ok(Wheel(self.0.free(rate(omega)?)))
     }
 
-    /// The same wheel with a motor that turns it by `torque`, N m, against the body from the time `begin` to `end`, s, or on without end; before and after
-    /// it turns freely. It has its speed where the body turns at `omega`, rad/s, body axes, before the motor begins.
+    /// The same wheel with a motor that turns it against the body by `torque`, N m, from `begin` to `end`, s (without end if that is `None`).
+    /// Before and after that it turns freely. Before the motor begins it has its speed when the body turns at `omega`, rad/s, body axes.
     #[pyo3(signature = (torque, omega, *, begin = 0.0, end = None))]
     fn driven(
         &self,
@@ -72,7 +71,7 @@ impl Wheel {
         self.0.driven(torque, works, rate(omega)?).map(Wheel).map_err(refused)
     }
 
-    /// Its speed against the body at the time `t`, s, where the body turns at `omega`, rad/s, body axes.
+    /// Its speed relative to the body at the time `t`, s, when the body turns at `omega`, rad/s, body axes.
     fn speed(&self, #[pyo3(from_py_with = number::t)] t: f64, omega: &Bound<'_, PyAny>) -> PyResult<f64> {
         Ok(self.0.speed(finite("t", t)?, rate(omega)?))
     }
@@ -100,9 +99,9 @@ impl Wheel {
     }
 }
 
-/// The motion of a body with wheels that are held or free from one start: its exact attitude and angular velocity at any time.
+/// The motion of a body with wheels that are held or free: its exact attitude and angular velocity at any time.
 ///
-/// `body` is one with wheels; the start is that of `FreeMotion`, and `momentum` that of body and wheels together.
+/// The start is given as for `FreeMotion`; `momentum` is that of body and wheels together.
 ///
 /// >>> from polhode import Body, GyrostatMotion, Wheel
 /// >>> body = Body([10, 12, 15], wheels=[Wheel([0, 1, 1], 0.01, 300)])
@@ -141,19 +140,19 @@ impl GyrostatMotion {
         self.motion.states(t, order.map_or(Ok(self.order), Order::of)?)
     }
 
-    /// The largest |t| at which the phases still have digits, s.
+    /// The largest |t|, s, at which the attitude can still be computed.
     #[getter]
     fn reach(&self) -> f64 {
         self.motion.reach()
     }
 
-    /// After which the angular velocity is what it was in the body, s; `None` where it stays so.
+    /// Period of the angular velocity in body axes, s; `None` if it is constant.
     #[getter]
     fn period(&self) -> Option<f64> {
         self.motion.character().period
     }
 
-    /// By how much the body has turned about L after that, rad, less whole turns.
+    /// Angle by which the body turns about L in one period, rad, without whole turns.
     #[getter]
     fn turn_per_period(&self) -> Option<f64> {
         self.motion.character().turn_per_period
@@ -190,31 +189,31 @@ impl SteadySpin {
         array(py, self.0.omega_body.as_slice().to_vec(), &[3])
     }
 
-    /// The same about L, rad/s: negative where the body turns against it.
+    /// Angular velocity about L, rad/s; negative if the body turns against L.
     #[getter]
     fn rate(&self) -> f64 {
         self.0.rate
     }
 
-    /// stable, unstable or neutral.
+    /// `stable`, `unstable` or `neutral`.
     #[getter]
     fn stability(&self) -> &'static str {
         self.0.stability.name()
     }
 
-    /// Of small oscillations in the body, rad/s; 0 unless it is stable.
+    /// Frequency of small nutation in body axes, rad/s; 0 unless the spin is stable.
     #[getter]
     fn frequency(&self) -> f64 {
         self.0.frequency
     }
 
-    /// At which a small deviation grows, 1/s; 0 unless it is unstable.
+    /// Rate at which a small deviation grows, 1/s; 0 unless the spin is unstable.
     #[getter]
     fn growth_rate(&self) -> f64 {
         self.0.growth_rate
     }
 
-    /// 1/2 omega . I omega, J.
+    /// Energy 1/2 omega . I omega, J.
     #[getter]
     fn energy(&self) -> f64 {
         self.0.energy
