@@ -95,7 +95,7 @@ pub mod strapdown;
 pub mod truth;
 pub mod units;
 
-/// A chapter for each kind of user, and what stands behind the exact motion.
+/// A chapter for each kind of user, on your own force and method, and on the exact motion.
 pub mod guide {
     #[doc = include_str!("../docs/attitude.md")]
     #[allow(rustdoc::broken_intra_doc_links, reason = "its tables name units in brackets")]

@@ -131,7 +131,7 @@ impl Body {
     /// The same body with one more wheel. Its [inertia](Self::locked_inertia) includes that of the wheel, at rest on the body.
     ///
     /// # Errors
-    /// A wheel that has more inertia about its axis than the whole has room for.
+    /// A wheel with so large a moment of inertia that no body is left without it.
     ///
     /// ```
     /// use nalgebra::Vector3;
@@ -190,7 +190,7 @@ impl Body {
         clear(scaled.magnitude()) && clear(moment.magnitude())
     }
 
-    /// Its inertia I, that of p = I ω: with wheels that are held, and without `J a aᵀ` of each that turns freely.
+    /// The inertia I of m = I ω: it includes wheels that are held, and is without `J a aᵀ` of each other wheel.
     pub fn inertia(&self) -> &Inertia {
         &self.inertia
     }
@@ -305,7 +305,7 @@ impl Body {
         x.rotation() * (x.momentum() + self.momentum_of_wheels_at(t))
     }
 
-    /// The angular momentum of its wheels at the time `t`, s, body axes, kg m²/s: what [`State::momentum`] is without. Zero without wheels.
+    /// The angular momentum of its wheels at the time `t`, s, body axes, kg m²/s: not part of [`State::momentum`]. Zero without wheels.
     #[must_use]
     pub fn momentum_of_wheels_at(&self, t: f64) -> Vector3<f64> {
         let wheels = self.wheels.iter().map(|wheel| wheel.momentum::<f64>(Time::from_seconds(t)));
@@ -327,10 +327,10 @@ impl Body {
         Forces::new(linear, others, frame, self.scale(), tensor, self.witness.clone())
     }
 
-    /// Kinetic and potential energy, J, at the time 0, where a potential depends on the time.
+    /// Kinetic and potential energy, J. A potential that depends on the time is taken at t = 0.
     ///
-    /// The kinetic energy is ½ ω·Iω with the tensor of [`inertia`](Self::inertia). What the spin of a wheel adds is left out: l²/2J of one
-    /// that turns freely or is driven, J Ω (a·ω + Ω/2) of one that is held.
+    /// The kinetic energy is ½ ω·Iω with the tensor of [`inertia`](Self::inertia). The energy of the spin of wheels is left out: l²/2J for one
+    /// that turns freely or is driven, J Ω (a·ω + Ω/2) for one that is held.
     #[must_use]
     pub fn energy(&self, x: &State) -> f64 {
         self.energy_at(0.0, x)

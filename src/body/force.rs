@@ -56,9 +56,8 @@ impl Force {
 
     /// A potential by two closures of the attitude, body → space: energy in J, and torque in N m, body axes.
     ///
-    /// U must not depend on the time, and equal attitudes must give equal values. If the energy error of a run does not shrink
-    /// with the step, the two closures do not match. Both are computed in `f64`, also where a reference is integrated in
-    /// double-double.
+    /// The energy must not depend on the time, and equal attitudes must give equal values. If the energy error of a run does not
+    /// shrink with the step, the torque does not belong to the energy. Both closures are computed in `f64`, also in runs in double-double.
     pub fn potential_fn<U, T>(name: impl Into<String>, energy: U, torque: T) -> Self
     where
         U: Fn(UnitQuaternion<f64>) -> f64 + Send + Sync + 'static,

@@ -1,4 +1,4 @@
-//! Inertia tensors, checked at the door.
+//! Inertia tensors, which are checked when they are made.
 
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 
@@ -153,14 +153,14 @@ impl Inertia {
         Quat::from_components(q.components().map(Dd::hi)).into()
     }
 
-    /// Which principal moments agree.
+    /// Which principal moments are equal.
     pub fn symmetry(&self) -> Symmetry {
         let mut moments = self.moments.map(Dd::hi);
         moments.sort_by(f64::total_cmp);
         Symmetry::of(moments)
     }
 
-    /// The tensor without its size: what free motion can tell of it.
+    /// The tensor without its size, which is all that free motion determines.
     pub fn shape(&self) -> InertiaShape {
         InertiaShape { tensor: self.tensor / self.scale / (self.tensor / self.scale).trace() }
     }

@@ -67,12 +67,12 @@ impl Run {
     /// Prepares `method` for `body` with the step `h` (s), from the state `start` (body axes) at t = 0.
     ///
     /// # Errors
-    /// A step or a start that is not usable, or a body that the method is not for.
+    /// A step or a start that cannot be used, or a body that the method refuses.
     pub fn new(method: &dyn AnyMethod, body: &Body, start: &State, h: f64) -> Result<Self, RunError> {
         Run::by_clock(method, body, start, Clock::new(h))
     }
 
-    /// As [`new`](Self::new), by the steps and from the time of `clock` on.
+    /// As [`new`](Self::new), with the step and the time of the start of `clock`.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -197,7 +197,7 @@ impl Run {
         Ok(run)
     }
 
-    /// The start in the solver frame, the doubles that are integrated: what an exact reference has to start from.
+    /// The start in the solver frame, as it is integrated: an exact reference has to start from these doubles.
     pub fn start(&self) -> Point<f64> {
         self.start
     }
@@ -207,8 +207,8 @@ impl Run {
     /// # Errors
     /// [`RunError::Diverged`], [`RunError::Force`] and [`RunError::Stuck`] with the last finite sample;
     /// [`RunError::Unsolved`] with the sample at which it was noticed, up to 4096 steps after the step that failed;
-    /// [`RunError::OutOfRange`]; [`RunError::Phase`] where forces have acted too long on what is taken back at output;
-    /// [`RunError::Behind`] where the run is further on already.
+    /// [`RunError::OutOfRange`]; [`RunError::Phase`] if forces have acted for too long for the correction `+phase`;
+    /// [`RunError::Behind`] if the run has taken more steps already.
     pub fn advance_to(&mut self, steps: u64) -> Result<Sample, RunError> {
         self.go_to(steps)?;
         self.finite_sample().map(|sample| *sample)

@@ -15,9 +15,9 @@ pub enum Watch {
     /// At every step.
     #[default]
     EveryStep,
-    /// At samples alone: [`Sample::worst`] is the largest over them, and flips are not counted.
+    /// At samples only: [`Sample::worst`] is the largest error over them, and flips are not counted.
     AtSamples,
-    /// Not at all: a step costs what the bare method costs. [`Sample::errors`] is still that of the sample.
+    /// Never, so that nothing is added to the time of a step. [`Sample::errors`] still has the errors of the sample.
     Never,
 }
 
@@ -70,12 +70,12 @@ pub struct Sample {
     pub energy_change: f64,
     /// Errors of this state.
     pub errors: Errors,
-    /// The largest errors of what was watched so far; `None` each while nothing is watched.
+    /// The largest errors so far, over what was watched; each `None` if nothing was.
     pub worst: Errors,
     /// How often the errors were evaluated.
     pub watch: Watch,
     /// How often the momentum along the axis of the middle moment has changed sign up to the last step, where every step was
-    /// watched; `None` where the phase is taken back, as states lie behind or before the steps then.
+    /// watched; `None` with `+phase`, whose states are not those of the steps.
     pub flips: Option<u64>,
 }
 

@@ -54,10 +54,12 @@ use crate::verdict::units::open_units;
 ///
 /// The estimator solves the weak form of Euler's equation by least squares, weighted with the covariance of its noise.
 /// Each round corrects the samples by the noise that the round before estimated, and linearises again. A quadratic
-/// program then finds the nearest physically valid tensor within the limits, in the metric of the information. Of rates so sparse
-/// that the body turns by a tenth of a turn from one to the next, the tensor is that of the largest likelihood on the exact motion, where a
-/// motion explains them. Where wheels of constant momentum alone act, the weak estimate is the start of the likelihood on their exact motion, unless a
-/// [`radius`](Settings::radius) is given, or the residuals of either are more than noise: then it stays the answer.
+/// program then finds the nearest physically valid tensor within the limits, in the metric of the information.
+///
+/// Maximum likelihood on the exact motion takes its place in two cases, if the motion explains the rates:
+/// - the rates are so sparse that the body turns by a tenth of a turn from one to the next;
+/// - only wheels of constant momentum act, and no [`radius`](Settings::radius) is given.
+///
 /// Neither the units of rate and time nor a rotation of the sensor change the result beyond rounding.
 ///
 /// ```

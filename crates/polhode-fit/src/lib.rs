@@ -1,9 +1,10 @@
 //! Inertia from measured angular velocities and attitudes.
 //!
 //! The angular velocity of a torque-free body determines its inertia tensor up to scale: five numbers. [`fit`]
-//! estimates them from a [`Record`] of rates: the weak form of Euler's equation (nothing is differentiated), weighted
-//! by the covariance of its own noise, then the nearest physically valid tensor. [`Estimate`] holds the tensor, the
-//! standard deviation of each number, the Cramér–Rao bound, and what in the record contradicts a free body.
+//! estimates them from a [`Record`] of rates. It solves the weak form of Euler's equation, which differentiates nothing,
+//! by least squares weighted with the covariance of its noise, and then takes the nearest physically valid tensor.
+//! [`Estimate`] holds the tensor, the standard deviation of each number, the Cramér–Rao bound, and what in the record
+//! contradicts a free body.
 //!
 //! ```
 //! use nalgebra::Vector3;
@@ -28,14 +29,10 @@
 //! # Ok::<(), polhode::Error>(())
 //! ```
 //!
-//! [`flights()`] finds the spans of free rotation in a recording that also shows how the body was held and caught.
-//!
-//! The tensor of a record of rates comes from rounds of linear least squares with one small semidefinite program at their end, which is
-//! solved by outer approximation; of a body with wheels of constant momentum maximum likelihood on the exact motion refines it before that program.
-//! [`fit_poses`] fits measured attitudes ([`Poses`]) by maximum
-//! likelihood on the exact motion.
-//!
-//! [`fit_carrier`] fits a carrier, alone and with a proof body, and an object on it to several records at once: absolute tensors.
+//! - [`flights()`] finds the spans of free rotation in a recording that also shows how the body was held and caught.
+//! - [`fit_poses`] fits measured attitudes ([`Poses`]) by maximum likelihood on the exact motion.
+//! - [`fit_carrier`] gives tensors in kg m² of a carrier and an object on it, from several records with and without a proof body.
+//! - [`calibrate_wheel`] gives the moment of inertia of a wheel on a known body.
 
 mod bound;
 mod carrier;

@@ -15,7 +15,7 @@ use crate::inertia::Inertia;
 use crate::num::{Dd, Instructions, Precise};
 use crate::rotation::Vec3;
 
-/// The motion of one free body from one start: constants worked out once, then any time in O(1).
+/// The motion of one free body from one start. Its constants are computed once; then every time costs the same.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};
@@ -105,7 +105,7 @@ impl FreeMotion {
     }
 
     /// The state at time `t` (s, of either sign) with its derivative by the state at t = 0 and by the inertia tensor, of a body of
-    /// any shape and any motion. The first call works out constants; each takes the same time at any `t`.
+    /// any shape and any motion. The first call computes constants; then every call takes the same time, at any `t`.
     ///
     /// ```
     /// use nalgebra::{UnitQuaternion, Vector3};
@@ -151,7 +151,7 @@ impl FreeMotion {
             .get_or_init(|| Box::new(Derivative::new(&self.body, self.orbit.variation(), self.orbit.start())))
     }
 
-    /// The largest |t| at which the phase still has digits, s: some 2⁹⁶ rad; infinite at rest.
+    /// The largest |t|, s, at which the phase still has correct digits, some 2⁹⁶ rad; infinite at rest.
     #[must_use]
     pub fn reach(&self) -> f64 {
         self.reach
@@ -162,7 +162,7 @@ impl FreeMotion {
         TimeError::check(t, self.reach)
     }
 
-    /// The states at many `times`, body axes: the bits of [`at`](Self::at), several times as fast.
+    /// The states at many `times`, body axes: the same bits as [`at`](Self::at), several times as fast.
     ///
     /// ```
     /// use nalgebra::{UnitQuaternion, Vector3};

@@ -44,7 +44,7 @@ pub struct GyrostatMotion {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct GyrostatCharacter {
-    /// After which the angular velocity is what it was in the body, s; `None` where it stays so.
+    /// Period of the angular velocity in body axes, s; `None` if it is constant.
     pub period: Option<f64>,
     /// By how much the body has turned about L after that, rad, less whole turns.
     pub turn_per_period: Option<f64>,

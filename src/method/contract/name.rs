@@ -21,11 +21,11 @@ use crate::num::Dd;
 /// `dmv` and `gauss` an order, `taylor` an order (a step is one series) or a tolerance, `dop853` and `tsit5` a tolerance;
 /// `kick-drift:2` and `kick-drift:4` are other names of `kick-drift` and `kick-drift@suzuki-4`, `no-squish` one of
 /// `lie-poisson:321`: that is the method of Miller et al., J. Chem. Phys. 116 (2002) 8649, which molecular dynamics programs
-/// write in quaternions and their momenta. `+phase` takes the [phase error](PhaseCorrected) back at output.
+/// write in quaternions and their momenta. `+phase` corrects the [phase error](PhaseCorrected) at output.
 ///
 /// # Errors
 /// A base or a scheme that does not exist, an argument that the base does not take, a scheme that does not fit it, or a
-/// phase error that cannot be taken back.
+/// phase error that cannot be corrected.
 ///
 /// ```
 /// use polhode::body::Problem;

@@ -26,9 +26,10 @@ use crate::thresholds::noise::SURE;
 
 /// Fits carrier, object and wheel to all records at once.
 ///
-/// All tensors are absolute, in the axes of the sensor. Their size comes from wheels of known momentum, from known torques, or from the
-/// proof body; without wheels and torques the size of an object needs a record with the proof body, too. Of `settings` the known quantity, the
-/// limits and the prior tensor must be left out; errors of the sensor are one unknown in all records, torques one of each.
+/// All tensors are in kg m², in the axes of the sensor. Their size comes from wheels of known momentum, from known torques, or from the
+/// proof body. Without wheels and torques, the size of the object needs a record of carrier, object and proof body. In `settings` the
+/// known quantity, the limits and the prior tensor must be left out. An error of the sensor is one unknown for all records; a torque is one
+/// unknown for each.
 ///
 /// ```
 /// use nalgebra::{Matrix3, Vector3};

@@ -28,11 +28,12 @@ use crate::verdict::axes::check_axes;
 /// Fits one tensor to all segments of measured attitudes, and to the angular velocities beside them where there are any.
 ///
 /// The motion of a free body is known in closed form, and so is its derivative: the tensor is that of the largest likelihood, each
-/// segment with a start of its own. Drag in proportion to the momentum is part of the closed form, a small constant torque is reckoned with to
-/// first order. Where none of these explains the attitudes, or another torque or torque noise is asked for, a Kalman filter and smoother about the
-/// motion under the torque takes their place, with torque noise for the rest; not where there are rates beside the attitudes. The tensor is in the body axes of the attitudes, or in those
-/// of the rates where there are rates.
-/// Attitudes of a body that moves alone do not tell the size of the tensor, as rates do not.
+/// segment with a start of its own. Drag in proportion to the momentum is part of the closed form; a small constant torque is fitted to
+/// first order. If none of these explains the attitudes, or another torque or torque noise is asked for, a Kalman filter and smoother
+/// about the motion under the torque is used, with torque noise for the rest. It does not take rates beside the attitudes.
+///
+/// The tensor is in the body axes of the attitudes, or in those of the rates if there are any. Like rates, the attitudes of a free body do
+/// not determine the size of the tensor.
 ///
 /// ```
 /// use nalgebra::{UnitQuaternion, Vector3};

@@ -77,7 +77,7 @@ impl Residuals {
     }
 }
 
-/// A fitted tensor and how far to trust it.
+/// A fitted tensor with its uncertainty.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -162,16 +162,16 @@ pub struct Estimate {
     pub energy_trend: Option<InvariantTrend>,
     /// Correlation of neighbouring residuals.
     pub whiteness: Whiteness,
-    /// The torque that the fit reckons with.
+    /// The fitted torque.
     pub torque: FittedTorque,
     /// Each model of the torque beside it; of a likelihood on the exact motion those that it has. Where the fit has chosen the model, the deviations
     /// of the answer include how far apart these are, each by its share, and by at least a fifth unless that is below a thousandth.
     pub models: Vec<ModelFit>,
     /// What errors of the sensor, and of the momentum of wheels as it is told, make of the record in the place of a torque; of rates alone.
     pub reading_errors: Vec<ErrorFit>,
-    /// What was estimated of the sensor, each with its prior.
+    /// The estimated errors of the sensor, each with its prior.
     pub nuisances: Vec<Nuisance>,
-    /// What errors of the sensor that the fit takes to be zero would do to the moments.
+    /// By how much errors of the sensor that the fit assumes to be zero would move the moments.
     pub systematic: Vec<Systematic>,
     /// How the record agrees with [`Settings::prior`](crate::Settings::prior).
     pub prior: Option<Agreement>,

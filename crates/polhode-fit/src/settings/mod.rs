@@ -25,31 +25,31 @@ use crate::settings::torque::{TorqueModel, TorqueNoise};
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// Half width of the test functions, s; chosen by least predicted covariance without it. With it the weak form answers also where wheels act.
+    /// Half width of the test functions, s; by default that of the least predicted covariance. If it is given, the answer is that of the
+    /// weak form, also where wheels act.
     pub radius: Option<f64>,
-    /// Standard deviation of the noise of one component, rad/s, at least 1e-10 of the rates; read from the samples
-    /// without it.
+    /// Standard deviation of the noise of one component, rad/s, at least 1e-10 of the rates; by default found in the samples.
     pub noise: Option<f64>,
-    /// Standard deviation of the noise of one component of the rotation vector of an attitude, rad; without it what the motion leaves.
+    /// Standard deviation of the noise of one component of the rotation vector of an attitude, rad; by default that of the residuals.
     pub attitude_noise: Option<f64>,
     /// What is known of the moments beforehand.
     pub limits: Vec<Limit>,
-    /// A tensor that is known beforehand: it is joined with the record, and supplies what the record leaves open.
+    /// A tensor that is known beforehand: it is combined with the record, and supplies what the record leaves open.
     pub prior: Option<Prior>,
-    /// What gives the absolute size.
+    /// A known quantity that gives the tensor in kg m².
     pub known: Option<Known>,
-    /// Whether a unit that explains the record better is an error.
+    /// Whether the fit is refused if other units explain the record better.
     pub check_units: bool,
-    /// The torque that acts.
+    /// The model of an unknown torque.
     pub torque: TorqueModel,
-    /// Step of the readings, rad/s; found in the readings without it. Its rounding is noise of variance
+    /// Step of the readings, rad/s; by default found in the readings. Its rounding is noise of variance
     /// q²/12, times the number of equal readings in a row.
     pub quantum: Option<f64>,
     /// The torque noise.
     pub torque_noise: TorqueNoise,
     /// What may be wrong with the sensor.
     pub sensor: SensorPriors,
-    /// Whether samples that stand out of their neighbours, alone or in bursts, are left out.
+    /// Whether samples that jump off their neighbours, alone or in bursts, are left out.
     pub leave_out_spikes: bool,
 }
 

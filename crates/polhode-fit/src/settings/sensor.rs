@@ -1,8 +1,8 @@
 //! What may be wrong with the sensor.
 
 use crate::setters::setters;
-/// Standard deviations of what may be wrong with the sensor, each a Gaussian prior about zero; `None` takes the sensor
-/// to be right.
+/// Prior standard deviations of errors of the sensor, Gaussian about zero. An error with a prior is estimated with the tensor; one that
+/// is `None` is assumed to be zero.
 ///
 /// ```
 /// use polhode_fit::{SensorPriors, Settings};

@@ -2,8 +2,8 @@
 
 use core::fmt;
 
-/// A torque that acts on the body besides what the record measures. Coefficients are per trace of the tensor, so that
-/// they need no absolute scale.
+/// The model of a torque that the record does not measure. Its coefficients are divided by the trace of the tensor, so that
+/// they do not depend on its size.
 #[non_exhaustive]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum TorqueModel {
