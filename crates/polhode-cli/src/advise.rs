@@ -38,9 +38,9 @@ const EXAMPLES: &str = "Examples:
 /// takes its method, step and tolerance as they are. Times are those of this machine. The search usually ends within two seconds
 /// plus ten times the run that it advises.
 ///
-/// Columns: predicted_error and predicted_energy_error, the largest errors up to T; factor, by which predicted_error may be wrong;
-/// predicted_cost, processor time, s; times_longer, that time over the least; whole_time (csv and json), whether the runs behind the
-/// prediction went as far as T; actual_error, with --check.
+/// Columns, with their headings in the table: predicted_error (attitude) and predicted_energy_error (energy), the largest errors up to T;
+/// factor, by which predicted_error may be wrong; predicted_cost (time), processor time, s; times_longer (longer), that time over the
+/// least; whole_time (csv and json alone), whether the runs behind the prediction went as far as T; actual_error (actual), with --check.
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Advise {

@@ -45,9 +45,11 @@ const EXAMPLES: &str = "Examples:
 /// Between two samples the rates are interpolated by a polynomial through the neighbouring samples, and the turn is the exponential of
 /// its Magnus series. Order and number of samples are chosen from the record and its noise. Columns: t, q_w, q_x, q_y, q_z (body to
 /// space, scalar first), attitude_sigma (standard deviation of each component of the attitude error from all causes, rad), truncation
-/// (estimated error of the method, rad). The start counts as exact. Exit code 1: the standard deviation of an attitude exceeds 1 rad,
-/// most attitudes differ from those of --against by more than twice their 95 % error bound, any by more than ten times of it and of the
-/// median difference, or none but the start is at a time of --against.
+/// (estimated error of the method, rad). The start counts as exact.
+///
+/// Exit code 1: the standard deviation of an attitude exceeds 1 rad. With --against also: most attitudes differ by more than twice their
+/// 95 % error bound, one differs by more than ten times its bound and ten times the median difference, or only the start is at a time of
+/// both.
 #[derive(Args, Clone, Debug)]
 #[command(after_help = EXAMPLES)]
 pub(crate) struct Attitude {

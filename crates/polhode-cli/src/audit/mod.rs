@@ -42,7 +42,7 @@ const EXAMPLES: &str = "Examples:
 /// Whether a trajectory of another program is right, its convention and its error
 ///
 /// Reads CSV and other tables with a time and an attitude (quaternion, matrix, Euler angles, MRP), an angular velocity or an
-/// angular momentum, in columns of any common names; qpos and qvel of MuJoCo; LAMMPS dumps. A column id tells several bodies apart.
+/// angular momentum, in columns of any common names; qpos and qvel of MuJoCo; LAMMPS dumps. A column id says which body a row belongs to.
 /// Every convention that the columns allow is tried, and the one in which the rows obey the equations of motion is kept. Without
 /// a body its moments are fitted up to a factor. The speed of a wheel is that at the first row.
 ///

@@ -47,13 +47,15 @@ const LOOKS: u32 = 64;
 
 /// Errors, cost and flips of methods on a body, against its true motion
 ///
-/// The true motion is the closed form where there is one, else two runs in double-double, as long as they agree. Columns:
-/// attitude_error, angle to the true attitude at the end, rad, where more than 1 rad counts as lost; evaluations, number of
-/// elementary operations of the method (forces, turns, exact free motions, solutions of implicit equations); seconds, processor
-/// time of the run without the check of its errors; rk4_steps, this time over that of a step of rk4 on the same body, measured
-/// side by side.
+/// The true motion is the closed form where there is one, else two runs in double-double, as long as they agree.
 ///
-/// Exit code 0: compared; 1: the rates of a trajectory contradict its attitudes, or no row of it behind the start is compared.
+/// Columns: attitude_error, angle to the true attitude at the end, rad, where more than 1 rad counts as lost; largest_attitude_error, the
+/// largest up to then; energy_error, momentum_error and so on, as in `propagate`; evaluations, number of elementary operations of the
+/// method (forces, turns, exact free motions, solutions of implicit equations); seconds, processor time of the run without the check of
+/// its errors; rk4_steps, this time over that of a step of rk4 on the same body, measured side by side; flips and flips_exact, how often
+/// the body turned over, and should have; status, ok or what became of the run. The table leaves some of them out.
+///
+/// Exit code 0: compared; 1: the rates of a trajectory contradict its attitudes, or none of its rows after the start is compared.
 #[derive(Args, Clone, Debug)]
 #[command(override_usage = USAGE, after_help = EXAMPLES)]
 pub(crate) struct Compare {

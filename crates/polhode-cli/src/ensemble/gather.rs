@@ -24,11 +24,11 @@ const EXAMPLES: &str = "Examples:
   polhode ensemble examples/ensemble.toml --out halves --shard 2/2
   polhode gather halves";
 
-/// Reduce the shards of an ensemble to the results of one run
+/// Join the shards of an ensemble into the results of one run
 ///
 /// `polhode ensemble --shard K/N` writes its shards to DIR/shards. All shards of one run must be there: with the same specification,
 /// seed, version and number of shards, and with unchanged files (the run.toml beside them has each SHA-256). The results in DIR are
-/// those of the run without shards, to the last bit, and their run.toml has the SHA-256 of each. The shards may then be removed.
+/// those of the run without shards, to the last bit, and their run.toml has the SHA-256 of each. The shards can then be removed.
 /// Files of another run, or of none, that stand in DIR under these names are replaced only with --replace.
 /// Exit code 1: every member failed.
 #[derive(Args, Clone, Debug)]

@@ -11,7 +11,7 @@ use super::named;
 /// Which claims are measured.
 #[derive(Args, Clone, Debug)]
 pub(super) struct Check {
-    /// Measure every claim of this method in some seconds, also that it does not keep something; exit code 1 if one is false
+    /// Measure every claim of this method, also that it does not keep what it does not claim to keep; takes some seconds. Exit code 1: a claim is false
     #[arg(long, value_name = "NAME", conflicts_with = "schemes")]
     check: Option<String>,
     /// Only in these kinds of motion [default: all for which the method is made]

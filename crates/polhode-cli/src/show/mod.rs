@@ -58,7 +58,7 @@ const MOST_RIVALS: usize = 3;
 ///
 /// --against draws a second body, faded, which a method moves from the same start, or whose attitudes a file has. The page shows the
 /// angle between the two, how often each has turned over, and how the energy of the second has changed. A method that diverges is shown
-/// up to then, and the page and a warning say when; as in `compare`, that is what was to be seen, and the exit code is 0.
+/// up to then; the page and a warning say when, and the exit code is 0.
 ///
 /// In the page: drag or arrow keys turn the view, + and - zoom, space plays and pauses, comma and full stop step back and forth. The
 /// end of the address sets what is shown first: #t=3.5 the time in s, #t=3.5&omega&polhode also checkboxes by name, #view=35,20 the
