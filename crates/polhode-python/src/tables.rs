@@ -160,8 +160,9 @@ impl Record {
 
     /// In which units its files were read: a dict for each file.
     ///
-    /// It has `file`, `rate_unit` and `time_unit`, and for each unit what named it: `header`, `setting`, `layout` of the file, `values`, or
-    /// `none` (rad/s and s were assumed). It also has `sample_rate`, Hz, `axes` as they were set, and `taken_as_right_handed`.
+    /// It has `file`, `rate_unit` and `time_unit`, and in `rate_unit_by` and `time_unit_by` what named them: `header`, `setting`, `layout` of the
+    /// file, `values`, or `none` (rad/s and s were assumed). It also has `sample_rate`, Hz, `axes` as they were set, and
+    /// `taken_as_right_handed`.
     #[getter]
     fn read_as<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
         parts::read_as(py, &self.read_as)

@@ -1,8 +1,8 @@
 """Rotation of rigid bodies: exact motion, integrators, audits of trajectories, inertia tensors, in arrays.
 
 Quaternions are scalar first (w, x, y, z) unless order="xyzw", active, body to space; angular velocities are in body axes, rad/s;
-inertia tensors are about the centre of mass with entries I_xy = -int x y dm, kg m^2 or any consistent unit. What cannot be used is
-refused by `PolhodeError`, a `ValueError`; what limits the use of a result is a `PolhodeWarning`.
+inertia tensors are about the centre of mass with entries I_xy = -int x y dm, kg m^2 or any consistent unit. Input that cannot be used
+raises `PolhodeError`, a `ValueError`; what limits the use of a result is a `PolhodeWarning`.
 
 >>> import polhode
 >>> attitude, omega = polhode.FreeMotion([1, 2, 3], [0.4, 1, -0.3]).at([0, 1e9])

@@ -10,7 +10,7 @@ WIDTH = 30
 
 
 def bar(stage: str, done: float, seconds: float | None = None) -> None:
-    """Shows on standard error what is being done, which part of it is, and about how long all of it takes.
+    """Shows on standard error what is being done, which part of it is done, and about how long all of it takes.
 
     >>> import polhode
     >>> from polhode.progress import bar
