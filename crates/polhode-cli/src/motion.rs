@@ -53,11 +53,15 @@ const EXAMPLES: &str = "Examples:
 ///   damping              time in which inner friction with the loss 1 lets the
 ///                        energy above that of the steady spin fall by a factor
 ///                        of e; for a smaller loss divide by it
+///   axis                 of the mode or of a steady spin: long (smallest moment),
+///                        middle or short, or where moments are equal, equatorial
+///                        or any; axis_x and so on, its direction in body axes
 ///   stability            of a steady spin, with the growth_rate of deviations
 ///   theta_min, _max      least and largest angle between the axis and L
 ///   lambda, beta         longitude and latitude of L in space
 ///   phi, psi             Euler angles at the start (z-x-z, z along L and along
 ///                        the axis)
+///   q_w, omega_body_x    and so on, attitude and angular velocity at the start
 ///   frame, epoch         axes of space, from --frame or from the catalogue
 ///                        (unknown: the attitude at the start is the identity),
 ///                        and the date of the start
