@@ -41,23 +41,46 @@ const EXAMPLES: &str = "Examples:
 
 /// Whether a trajectory of another program is right, its convention and its error
 ///
-/// Reads CSV and other tables with a time and an attitude (quaternion, matrix, Euler angles, MRP), an angular velocity or an
-/// angular momentum, in columns of any common names; qpos and qvel of MuJoCo; LAMMPS dumps. A column id says which body a row belongs to.
-/// Every convention that the columns allow is tried, and the one in which the rows obey the equations of motion is kept. Without
-/// a body its moments are fitted up to a factor. The speed of a wheel is that at the first row.
+/// Reads CSV and other tables with a time and an attitude (quaternion, matrix,
+/// Euler angles, MRP), an angular velocity or an angular momentum, in columns of
+/// any common names; qpos and qvel of MuJoCo; LAMMPS dumps. A column id says which
+/// body a row belongs to. Every convention that the columns allow is tried, and the
+/// one in which the rows obey the equations of motion is kept. Without a body its
+/// moments are fitted up to a factor. The speed of a wheel is that at the first
+/// row.
 ///
-/// right: every row and every column that is read agrees with one motion of the body, within --tolerance, within the precision of
-/// its digits, or within the noise that --noise declares. A record that agrees only within a noise that is not declared is
-/// undecided. A record that contradicts what a name or an option states (a direction, a frame, a unit, the axes of roll, pitch and
-/// yaw, the order of the moments) is wrong. With --against the verdict is undecided unless all times of one file are in the other.
+/// right: every row and every column that is read agrees with one motion of the
+/// body, within --tolerance, within the precision of its digits, or within the
+/// noise that --noise declares. A record that agrees only within a noise that is
+/// not declared is undecided. A record that contradicts what a name or an option
+/// states (a direction, a frame, a unit, the axes of roll, pitch and yaw, the order
+/// of the moments) is wrong. With --against the verdict is undecided unless all
+/// times of one file are in the other.
 ///
-/// suspect: kinematics-sign, omega-frame, transposed, moments-order, degrees, angles-order, gyroscopic-term-missing,
-/// gyroscopic-sign, integrator:NAME, discontinuity, other-body, other-torque, other-wheel or none. If it is the integrator, the
-/// report also names a method and a step that are accurate enough, unless the search for them takes more than two seconds.
+/// suspect: what explains the errors.
+///
+///   kinematics-sign          the attitude turns the wrong way
+///   omega-frame              angular velocity in body axes, used or stated as one
+///                            in space axes, or the other way round
+///   transposed               a rotation, used or stated in place of its inverse
+///   moments-order            the moments belong to other axes
+///   degrees                  another unit of the angular velocity
+///   angles-order             Euler angles about other axes than their columns say
+///   gyroscopic-term-missing  Euler's equations without w x I w
+///   gyroscopic-sign          a term of w x I w with the wrong sign
+///   integrator:NAME          errors like those of this method
+///   discontinuity            the state jumps
+///   other-body               the motion of a body with other moments
+///   other-torque             L changes as under another torque
+///   other-wheel              a wheel of another speed, or free instead of held
+///   none                     nothing that is known
+///
+/// If it is the integrator, the report also names a method and a step that are
+/// accurate enough, unless the search for them takes more than two seconds.
 ///
 /// Exit code 0: right; 1: wrong or undecided.
 #[derive(Args, Clone, Debug)]
-#[command(override_usage = USAGE, after_help = EXAMPLES)]
+#[command(verbatim_doc_comment, override_usage = USAGE, after_help = EXAMPLES)]
 #[command(mut_group("BodyArguments", |group| group.required(false)))]
 pub(crate) struct Audit {
     /// Rows of the trajectory; - reads standard input
