@@ -80,7 +80,7 @@ impl NamedBody {
     /// use polhode::catalogue::body;
     /// let words = |name: &str| body(name).map(|found| found.attitude_known());
     /// assert_eq!(words("toutatis").as_deref(), Some("attitude in the frame ecliptic J2000 at 1992-11-09T17:49:47 UTC"));
-    /// assert_eq!(words("phone").as_deref(), Some("attitude unknown: identity"));
+    /// assert_eq!(words("phone").as_deref(), Some("attitude unknown, taken as the identity"));
     /// ```
     pub fn attitude_known(&self) -> String {
         match self.orientation {
@@ -88,7 +88,7 @@ impl NamedBody {
                 format!("attitude in the frame {frame} at {epoch}")
             }
             Some(Orientation { frame, .. }) => format!("attitude in the frame {frame}"),
-            None => "attitude unknown: identity".into(),
+            None => "attitude unknown, taken as the identity".into(),
         }
     }
 

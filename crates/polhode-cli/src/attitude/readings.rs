@@ -16,7 +16,7 @@ use crate::flags::record::{RecordArguments, of_a_row, tell_skipped};
 /// What a reading is.
 #[derive(Args, Clone, Debug)]
 pub(super) struct KindArguments {
-    /// What a reading is [default: told by the unit of the columns]
+    /// What a reading is [default: found from the unit of the columns]
     #[arg(long, value_enum, help_heading = "Record")]
     kind: Option<KindName>,
     /// Where a gap or the end of the sensor's range parts the record, begin again with the start behind it

@@ -201,7 +201,7 @@ fn the_attitude_of_the_catalogue_stays_unless_another_is_given() {
     }
     assert_eq!(tilted("--omega 0,0,60 --attitude 1,0,0,0"), (false, String::new()));
     let unknown = run("propagate --body racket --times 0");
-    assert_eq!(unknown.notes, "note: racket: attitude unknown: identity\n");
+    assert_eq!(unknown.notes, "note: racket: attitude unknown, taken as the identity\n");
     // published: doi of arXiv:1504.02024
     let toutatis = run("motion --body toutatis");
     for (name, expected) in [("lambda", 180.2_f64), ("beta", -54.75)] {

@@ -13,7 +13,7 @@ use crate::signal::terms::{Terms, cross_derivative, slope};
 
 /// The bound of [`foreseen_bound`](crate::foreseen_bound) for a fit with `settings`: their torque, with `coefficients` in
 /// the order of [`FittedTorque::coefficients`](crate::FittedTorque::coefficients) as it acts, their errors of the
-/// sensor, and their prior tensor. `Auto` stands for no torque; torque noise is not reckoned with.
+/// sensor, and their prior tensor. `Auto` stands for no torque; torque noise is left out.
 ///
 /// ```
 /// use nalgebra::Vector3;

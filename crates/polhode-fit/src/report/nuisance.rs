@@ -61,7 +61,7 @@ pub(crate) fn nuisances(
     .collect()
 }
 
-/// The torque that a fit reckons with.
+/// A fitted torque.
 #[non_exhaustive]
 #[derive(Clone, Debug, PartialEq)]
 pub struct FittedTorque {

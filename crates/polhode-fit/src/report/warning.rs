@@ -138,7 +138,7 @@ pub enum Warning {
         /// One over the trace that they give, in its standard deviations.
         size: f64,
     },
-    /// A torque was found and reckoned with.
+    /// A torque was found and is part of the fit.
     Torque(FittedTorque),
     /// An error of the sensor, or of the momentum of wheels, explains the record without a torque as well as the torque that was chosen; the deviations reach both.
     AsWell {
