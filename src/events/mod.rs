@@ -11,8 +11,8 @@
 //! [its bound](Event::changing_at_most). Without a bound, and along runs, two events that are nearer together than the spacing may be
 //! missed; [`Events::may_miss`] says which.
 //!
-//! Signs of what ready-made events cannot tell from zero by doubles do not count: a cone, a rate or an axis that a motion keeps to
-//! within rounding is found once, where the search begins, and a cone that is touched to within rounding is found once or not at all.
+//! Changes of sign within rounding do not count: a cone, a rate or an axis that a motion keeps to within rounding is found once, where
+//! the search begins, and a cone that is only touched, to within rounding, is found once or not at all.
 //!
 //! ```
 //! use nalgebra::{UnitQuaternion, Vector3};
