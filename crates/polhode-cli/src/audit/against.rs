@@ -33,6 +33,9 @@ const SAME_TIME: f64 = 1e-6;
 /// Noise of so many standard deviations is allowed beside the tolerance.
 const SIGMAS: f64 = 6.0;
 
+/// What digits leave open is known to this share: it is looked for at some rows.
+const ROUNDED: f64 = 1.05;
+
 impl Golden {
     /// Of a file that `polhode audit --golden` has written, or one with the same columns and the line `# moments: I1,I2,I3`.
     pub(super) fn read(path: &Path) -> Result<Self, Error> {
@@ -74,17 +77,19 @@ impl Golden {
         Ok(())
     }
 
-    /// The distance of `record`, read as the verdict has it.
+    /// The distance of `record`, read as the verdict has it; `is_noisy`: a noise was declared.
     pub(super) fn difference(
         &self,
         file: &str,
         record: &Trajectory,
         verdict: &Verdict,
-        tolerance: f64,
+        (tolerance, is_noisy): (f64, bool),
     ) -> Result<Difference, Error> {
         let (golden, times) = (&self.rows.times, &record.times);
         let interval = (golden[golden.len() - 1] - golden[0]) / (golden.len() - 1) as f64;
-        let allowed = tolerance.max(SIGMAS * verdict.resolution.attitude.unwrap_or(0.0));
+        // digits leave no more open than they do; only noise is now and then larger than it usually is
+        let times_resolution = if is_noisy { SIGMAS } else { ROUNDED };
+        let allowed = tolerance.max(times_resolution * verdict.resolution.attitude.unwrap_or(0.0));
         let (name, of) = (self.name.clone(), golden.len());
         let (largest, at, tolerance) = (0.0, golden[0], allowed);
         let mut found = Difference { name, rows: 0, of, is_whole: false, largest, at, tolerance };

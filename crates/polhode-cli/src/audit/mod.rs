@@ -232,8 +232,8 @@ impl Audit {
             if verdict.judgement != Judgement::Right && unit_is_open {
                 notes.extend(clock(&record, &verdict.reading));
             }
-            let against =
-                golden.as_ref().map(|golden| golden.difference(&place, &record, &verdict, self.tolerance));
+            let allowed = (self.tolerance, question.noise.attitude > 0.0);
+            let against = golden.as_ref().map(|golden| golden.difference(&place, &record, &verdict, allowed));
             let against = against.transpose()?;
             let compared = golden.as_ref().zip(against.as_ref());
             notes.extend(compared.and_then(|(golden, difference)| golden.note(&record, difference)));

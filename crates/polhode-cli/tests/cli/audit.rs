@@ -612,6 +612,26 @@ fn dates_and_counts_since_1970_are_matched_by_their_moments() {
     refused(&format!("audit {open} --against {late_counts}"), &["late-counts.csv: ", "no time scale"]);
 }
 
+/// Four decimals of a quaternion leave 2e-4 rad open: a motion that is seen from axes of space that are turned by more is another.
+#[test]
+fn digits_hide_no_more_of_a_difference_than_they_leave_open() {
+    let scratch = Scratch::new("audit-golden-digits");
+    let header = "t,q_w,q_x,q_y,q_z,omega_body_x,omega_body_y,omega_body_z";
+    let all = rows("");
+    let reference = golden(&scratch, "golden.csv", header, all.iter().map(|r| r.to_vec()));
+    for (angle, code) in [(0.0, 0), (5e-4, 1)] {
+        let turn = nalgebra::UnitQuaternion::from_euler_angles(0.0, 0.0, angle).into_inner();
+        let written = all.iter().map(|r| {
+            let q = turn * nalgebra::Quaternion::new(r[1], r[2], r[3], r[4]);
+            let q = [q.w, q.i, q.j, q.k].map(|x| (x * 1e4).round() / 1e4);
+            [&r[..1], &q[..], &r[5..]].concat()
+        });
+        let record = scratch.file("run.csv", table(header, written));
+        assert_eq!(run(&format!("audit {record} {BODY}")).code, 0, "{angle}: a motion of the body");
+        assert_eq!(run(&format!("audit {record} --against {reference}")).code, code, "{angle}");
+    }
+}
+
 /// Times are whole sixteenths of a second.
 #[test]
 fn a_comparison_of_some_rows_promises_nothing_of_all() {
