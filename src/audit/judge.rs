@@ -14,7 +14,7 @@ use super::misplaced::misplaced;
 use super::other_body::other_body as other_body_of;
 use super::other_torque::other_torque as other_torque_of;
 use super::other_wheel::other_wheel as other_wheel_of;
-use super::resolution::{Writings, rounding_turn, triples};
+use super::resolution::{Writing, Writings, rounding_turn, triples};
 use super::rows::typical_turn;
 use super::signature::signature as signature_of;
 use super::states::{Quantities, states};
@@ -285,11 +285,16 @@ fn allowances(
     let turned = |frame: Option<Frame>, rounding: f64| {
         if frame == Some(Frame::Space) { rounding + angle_rounding } else { rounding }
     };
+    let rounding = |vectors: &Option<Vec<[f64; 3]>>, writing: &Writing| {
+        vectors.as_ref().map_or(writing.rounding(), |vectors| writing.rounding_of(vectors))
+    };
+    let rates = rounding(&record.rates, &writings.rates);
+    let momentum = rounding(&record.momentum, &writings.momentum);
     Allowances {
         tolerance: question.tolerance,
         attitude: of(angle_rounding, question.noise.attitude),
-        rates: of(turned(reading.omega_frame, writings.rates.rounding()), relative),
-        momentum: of(turned(reading.momentum_frame, writings.momentum.rounding()), relative),
+        rates: of(turned(reading.omega_frame, rates), relative),
+        momentum: of(turned(reading.momentum_frame, momentum), relative),
     }
 }
 

@@ -48,7 +48,8 @@ impl Writings {
         };
         let finest = |own: Writing, others: [(bool, Writing); 2]| {
             let there = others.into_iter().filter(|(is_there, _)| *is_there);
-            there.fold(own, |a, (_, b)| if a.digits > b.digits { a } else { b })
+            // with as many digits, though not with as many decimals
+            there.fold(own, |a, (_, b)| if a.digits > b.digits { a } else { Writing { decimals: None, ..b } })
         };
         let attitude = (record.attitude.is_some(), found.attitude);
         if stays(&record.rates) {
@@ -105,6 +106,14 @@ impl Writing {
         }
         let places = self.decimals.map_or_else(|| exponent(x) - self.digits as i32 + 1, |places| -places);
         (0.5 * libm::exp10(f64::from(places))).max(least)
+    }
+
+    /// What a column of `vectors` may be off, relative to their size: with as many decimals everywhere, each component by half a
+    /// unit of the last one.
+    pub(super) fn rounding_of(&self, vectors: &[[f64; 3]]) -> f64 {
+        let squares = vectors.iter().map(|v| Vec3(*v).norm_squared()).sum::<f64>();
+        let off = self.half_unit(0.0) * (3.0 * vectors.len() as f64 / squares).sqrt();
+        if off.is_finite() { self.rounding().max(off) } else { self.rounding() }
     }
 
     /// Half a unit of the last digit, relative to the largest number with that exponent.

@@ -225,6 +225,21 @@ fn digits_are_those_of_each_column() {
     assert_ne!(judged(&coarse), Judgement::Right);
 }
 
+/// Half a unit of the last decimal in each of three components is √3 times as much as in one.
+#[test]
+fn an_exact_record_of_any_number_of_decimals_is_right() {
+    let good = plain(&motion(400));
+    for (decimals, unit) in [(2, 1e2), (3, 1e3), (4, 1e4), (5, 1e5), (8, 1e8)] {
+        let rounded = |x: &mut f64| *x = (*x * unit).round() / unit;
+        let mut record = good.clone();
+        quaternions(&mut record).iter_mut().flatten().for_each(rounded);
+        record.rates.as_mut().unwrap().iter_mut().flatten().for_each(rounded);
+        assert_eq!(judged(&record), Judgement::Right, "{decimals}");
+        record.rates.as_mut().unwrap()[200][1] += (4.0 / unit).max(4e-6);
+        assert_ne!(judged(&record), Judgement::Right, "{decimals}, and one number off by more");
+    }
+}
+
 /// Of few digits, attitudes leave open what they turn into the body, and not what was written in space.
 #[test]
 fn attitudes_of_few_digits_hide_no_fault_of_an_angular_velocity_in_space() {
