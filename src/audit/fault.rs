@@ -27,6 +27,13 @@ pub enum Fault {
         /// The turn, rad.
         angle: f64,
     },
+    /// Attitudes alone that turn by less than ten times what they may be off.
+    TooLittle {
+        /// The largest turn from the first row, rad.
+        turn: f64,
+        /// What they may be off, rad.
+        open: f64,
+    },
     /// An interval is much longer than the others.
     TimeJump {
         /// The row behind it, from 0.
@@ -136,6 +143,10 @@ impl fmt::Display for Fault {
                     "the body turns by {angle:.3} rad between rows; record so often that it turns by less than pi/2 between them"
                 )
             }
+            Fault::TooLittle { turn, open } => write!(
+                f,
+                "the attitudes turn by {turn:.1e} rad in all and may be off by {open:.1e} rad; record longer, with more digits or with angular velocities, or allow less by a smaller tolerance"
+            ),
             Fault::TimeJump { row, interval, usual, count } => {
                 write!(
                     f,

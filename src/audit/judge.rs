@@ -14,6 +14,7 @@ use super::misplaced::misplaced;
 use super::other_body::other_body as other_body_of;
 use super::other_torque::other_torque as other_torque_of;
 use super::other_wheel::other_wheel as other_wheel_of;
+use super::question::MOST;
 use super::resolution::{Writing, Writings, rounding_turn, triples};
 use super::rows::typical_turn;
 use super::signature::signature as signature_of;
@@ -107,6 +108,13 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
     faults.extend(no_rotation);
     if deviation.is_none() && !free {
         faults.push(Fault::NotFollowed);
+    }
+    if by_motion == Judgement::Right
+        && !has_omega
+        && let Some(fault) = too_little(record, &reading, &allowances.attitude)
+    {
+        by_motion = Judgement::Undecided;
+        faults.push(fault);
     }
     // of attitudes alone nobody knows which way they turn from row to row, nor how often
     let angle = if has_omega { 0.0 } else { typical_turn(record) };
@@ -265,6 +273,16 @@ fn window_turn(record: &Trajectory, reading: &Reading) -> f64 {
     let mut turns: Vec<f64> = windows.starts.iter().map(turn).collect();
     turns.sort_by(f64::total_cmp);
     turns.get(turns.len() / 2).copied().unwrap_or(0.0).max(f64::MIN_POSITIVE)
+}
+
+/// The fault of attitudes alone that hardly turn: what they may be off leaves more than a tenth of the angular velocity open.
+fn too_little(record: &Trajectory, reading: &Reading, allowance: &Allowance) -> Option<Fault> {
+    let first = reading.attitude(record, 0)?;
+    let angle =
+        |row| reading.attitude(record, row).map_or(0.0, |q| (first.conjugate() * q).logarithm().norm());
+    let turn = (1..record.times.len()).map(angle).fold(0.0, f64::max);
+    let open = allowance.exact.max(allowance.noise);
+    (open > MOST * turn).then_some(Fault::TooLittle { turn, open })
 }
 
 /// What each column may be off.

@@ -137,6 +137,26 @@ fn attitudes_alone_that_are_too_far_apart_are_undecided() {
     assert!(verdict.faults.iter().any(|fault| matches!(fault, Fault::TooCoarse { .. })));
 }
 
+/// Attitudes alone that turn by less than ten times the tolerance are those of nearly any motion.
+#[test]
+fn attitudes_alone_that_hardly_turn_are_undecided() {
+    let slow = |factor: f64, order: &dyn Fn(usize) -> usize| {
+        let body = body();
+        let start = body.state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3) * factor).unwrap();
+        let mut record = plain(&states(&body, &start, 0.05, 401));
+        record.rates = None;
+        let Some(Attitudes::Quaternions(rows)) = &mut record.attitude else { panic!() };
+        *rows = (0..401).map(|row| rows[order(row)]).collect();
+        let verdict = audit(&record, &Question::new(Some(body))).unwrap();
+        let is_named = verdict.faults.iter().any(|fault| matches!(fault, Fault::TooLittle { .. }));
+        (verdict.judgement, is_named)
+    };
+    // by about 2e-4 rad and by 2e-8 rad, at a tolerance of 1e-6 rad
+    assert_eq!(slow(1e-5, &|row| row), (Judgement::Right, false));
+    assert_eq!(slow(1e-9, &|row| row), (Judgement::Undecided, true));
+    assert_ne!(slow(1e-9, &|row| row * row % 401).0, Judgement::Right, "rows in another order");
+}
+
 /// Times in ms that are read as s: under a torque the body would turn by 5e5 rad.
 #[test]
 fn a_forced_motion_that_turns_without_end_is_undecided() {
