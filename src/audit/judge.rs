@@ -73,8 +73,15 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
     let angle_rounding = rounding_turn(record, &reading, writings.attitude);
     let tolerance = question.tolerance;
     let fits = question.body.is_none();
-    let allowances = allowances(record, &reading, &body, question, &writings, angle_rounding);
+    let mut allowances = allowances(record, &reading, &body, question, &writings, angle_rounding);
     let told = question.told();
+    let mut if_rounded = None;
+    if is_one_vector(record) {
+        if_rounded = deviation(record, &reading, &body, told.as_ref(), fits, &allowances);
+        for allowance in [&mut allowances.rates, &mut allowances.momentum] {
+            *allowance = Allowance::of(tolerance, 0.5 * f64::EPSILON, allowance.noise);
+        }
+    }
     let deviation = deviation(record, &reading, &body, told.as_ref(), fits, &allowances);
     let noise = deviation.as_ref().map_or(rounding, |found| found.attitude_noise.max(found.rates_noise));
     let free = body.problem() == Problem::Free;
@@ -104,6 +111,9 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
     let contradicted = contradicted || no_rotation.is_some() || off_as_written();
     let mut by_motion =
         if by_motion == Judgement::Right && contradicted { Judgement::Undecided } else { by_motion };
+    if by_motion == Judgement::Wrong && if_rounded.is_some_and(|found| found.judgement != Judgement::Wrong) {
+        by_motion = Judgement::Undecided;
+    }
     let mut faults = faults(record, &reading, &writings.coarsest(), tolerance);
     faults.extend(no_rotation);
     if deviation.is_none() && !free {
@@ -273,6 +283,14 @@ fn window_turn(record: &Trajectory, reading: &Reading) -> f64 {
     let mut turns: Vec<f64> = windows.starts.iter().map(turn).collect();
     turns.sort_by(f64::total_cmp);
     turns.get(turns.len() / 2).copied().unwrap_or(0.0).max(f64::MIN_POSITIVE)
+}
+
+/// Whether angular velocities or momenta alone are the same in all rows: whether they are rounded is not to be seen.
+fn is_one_vector(record: &Trajectory) -> bool {
+    let stays = |vectors: &Option<Vec<[f64; 3]>>| {
+        vectors.as_ref().is_none_or(|vectors| vectors.windows(2).all(|pair| pair[0] == pair[1]))
+    };
+    record.attitude.is_none() && stays(&record.rates) && stays(&record.momentum)
 }
 
 /// The fault of attitudes alone that hardly turn: what they may be off leaves more than a tenth of the angular velocity open.

@@ -137,6 +137,17 @@ fn attitudes_alone_that_are_too_far_apart_are_undecided() {
     assert!(verdict.faults.iter().any(|fault| matches!(fault, Fault::TooCoarse { .. })));
 }
 
+/// One digit of a vector that is the same in all rows is no rounding: a program without ω × Iω keeps what it was given.
+#[test]
+fn a_vector_that_stays_hides_nothing_in_its_few_digits() {
+    let times: Vec<f64> = (0..51).map(|k| 0.2 * f64::from(k)).collect();
+    let of = |omega: [f64; 3]| {
+        judged(&Trajectory::new(times.clone()).with_rates(vec![omega; times.len()]), Some(body()))
+    };
+    assert_ne!(of([0.4, 1.0, -0.3]), Judgement::Right);
+    assert_eq!(of([0.0, 0.0, 0.3]), Judgement::Right, "about a principal axis");
+}
+
 /// Attitudes alone that turn by less than ten times the tolerance are those of nearly any motion.
 #[test]
 fn attitudes_alone_that_hardly_turn_are_undecided() {
