@@ -2,6 +2,7 @@
 
 use super::bodies::Told;
 use super::deviation::{Allowances, Deviation, GROUPS};
+use super::faults::unit_of_times;
 use super::program::Dynamics;
 use super::resolution::{Writing, Writings, triples};
 use super::start::{Weights, fitted};
@@ -29,7 +30,8 @@ pub(super) fn off_in_space(
     let rates = record.rates.as_ref().filter(|_| in_space(reading.omega_frame));
     let momentum = record.momentum.as_ref().filter(|_| in_space(reading.momentum_frame));
     let is_noisy = [allowed.attitude, allowed.rates, allowed.momentum].iter().any(|of| of.noise > 0.0);
-    let is_rounded = allowed.attitude.rounding > allowed.tolerance;
+    // the digits of times leave a vector open too, whatever its own
+    let is_rounded = allowed.attitude.rounding > allowed.tolerance && unit_of_times(record).is_none();
     if record.attitude.is_none() || is_noisy || !is_rounded || (rates, momentum) == (None, None) {
         return false;
     }

@@ -45,6 +45,11 @@ pub enum Fault {
         /// How many there are.
         count: usize,
     },
+    /// Times of rows that follow each other evenly, rounded.
+    RoundedTimes {
+        /// The unit of their last digit, s.
+        unit: f64,
+    },
     /// Quaternions change sign between rows.
     SignFlips {
         /// The first row behind one.
@@ -152,6 +157,9 @@ impl fmt::Display for Fault {
                     f,
                     "row {row}: {interval} s after the row before, usually {usual} s ({count} such intervals)"
                 )
+            }
+            Fault::RoundedTimes { unit } => {
+                write!(f, "the times are rounded to {unit:.0e} s; write them with all digits")
             }
             Fault::SignFlips { row, count } => {
                 write!(

@@ -37,6 +37,7 @@ pub(super) fn faults(
     if let Some(&(row, interval)) = jumps.first().filter(|_| 20 * jumps.len() < record.times.len()) {
         found.push(Fault::TimeJump { row, interval, usual, count: jumps.len() });
     }
+    found.extend(unit_of_times(record).map(|unit| Fault::RoundedTimes { unit }));
     found.extend(too_coarse(record, reading, usual));
     if let Some(Attitudes::Quaternions(rows)) = &record.attitude {
         let flips: Vec<usize> = rows
@@ -64,6 +65,38 @@ fn usual_interval(record: &Trajectory) -> f64 {
     let mut intervals: Vec<f64> = record.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let middle = intervals.len() / 2;
     *intervals.select_nth_unstable_by(middle, f64::total_cmp).1
+}
+
+/// The part of a unit to which that is one is known.
+const WHOLE: f64 = 1e-3;
+
+/// The unit, s, to which the times of rows were rounded that follow each other evenly; `None` of any other times.
+///
+/// Between rounded times there are two intervals alone, one unit apart; a lost row makes two as well, one twice the other.
+pub(super) fn unit_of_times(record: &Trajectory) -> Option<f64> {
+    let times = &record.times;
+    // the later rows, where the units of numbers of some digits are largest
+    let intervals = times.windows(2).skip(times.len() / 2).map(|pair| pair[1] - pair[0]);
+    let least = intervals.clone().fold(f64::INFINITY, f64::min);
+    let most = intervals.clone().fold(0.0, f64::max);
+    let unit = most - least;
+    let is_power = |base: f64| {
+        let power = (libm::log2(unit) / libm::log2(base)).round();
+        (unit / libm::pow(base, power) - 1.0).abs() < WHOLE
+    };
+    let is_one_of_two = |interval: f64| (interval - least).min(most - interval) < WHOLE * unit;
+    // between doubles that count from long ago the unit is a power of two
+    let is_unit = unit > 1e-9 * least && (2.0 - WHOLE) * unit < least && (is_power(10.0) || is_power(2.0));
+    if !is_unit || !intervals.clone().all(is_one_of_two) {
+        return None;
+    }
+    let rows = || times.iter().enumerate().map(|(row, t)| (row as f64, t - times[0]));
+    let count = times.len() as f64;
+    let (middle, mean) = (0.5 * (count - 1.0), rows().map(|(_, t)| t).sum::<f64>() / count);
+    let usual =
+        rows().map(|(row, t)| (row - middle) * t).sum::<f64>() * 12.0 / (count * (count * count - 1.0));
+    let is_even = rows().all(|(row, t)| (t - mean - usual * (row - middle)).abs() <= 0.75 * unit);
+    is_even.then_some(unit)
 }
 
 fn too_coarse(record: &Trajectory, reading: &Reading, usual: f64) -> Option<Fault> {
@@ -198,4 +231,32 @@ pub(super) fn discontinuity(record: &Trajectory, reading: &Reading, rounding: f6
         }
     }
     (count > 0).then_some(Fault::Discontinuity { row: largest.0, size: largest.1, count })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of 240 rows a second: to ms, cut to ms, and counted in doubles from 1970 on; not of whole times, uneven ones or lost rows.
+    #[test]
+    fn the_unit_of_rounded_times_is_told_from_an_even_clock() {
+        let unit = |of: &dyn Fn(f64) -> f64| {
+            let times = (0..2400).map(|row| of(f64::from(row))).collect();
+            unit_of_times(&Trajectory::new(times))
+        };
+        let is_near = |found: Option<f64>, unit: f64| found.is_some_and(|x| (x / unit - 1.0).abs() < 1e-3);
+        assert!(is_near(unit(&|row| (row / 0.24).round() / 1e3), 1e-3));
+        assert!(is_near(unit(&|row| (row / 0.24).floor() * 1e-3), 1e-3));
+        assert!(is_near(unit(&|row| 1.7e9 + row / 240.0), libm::scalbn(1.0, -22)));
+        let others: [(&str, &dyn Fn(f64) -> f64); 5] = [
+            ("whole", &|row| 0.05 * row),
+            ("of all digits", &|row| row / 240.0),
+            ("with a lost row", &|row| 0.1 * if row < 2000.0 { row } else { row + 1.0 }),
+            ("twice as long", &|row| 0.1 * if row < 2000.0 { row } else { 2.0 * row - 2000.0 }),
+            ("drifting", &|row| 0.05 * row + 1e-7 * row * row),
+        ];
+        for (what, of) in others {
+            assert_eq!(unit(of), None, "{what}");
+        }
+    }
 }

@@ -9,7 +9,7 @@ use super::conservation::conservation;
 use super::detective::Finding;
 use super::deviation::{Allowances, deviation, trace};
 use super::exchanged::exchanged;
-use super::faults::{discontinuity, faults, no_rotation};
+use super::faults::{discontinuity, faults, no_rotation, unit_of_times};
 use super::misplaced::misplaced;
 use super::other_body::other_body as other_body_of;
 use super::other_torque::other_torque as other_torque_of;
@@ -33,6 +33,9 @@ const DERIVED: f64 = 3.0;
 
 /// Groups of three rows that the size of ω is read off.
 const LOOKS: usize = 128;
+
+/// The part of their unit that rounded times are off: half of it, and a tenth for the start that is fitted to them.
+const ROUNDED: f64 = 0.6;
 
 /// The verdict on `record`, of which `finding` is known.
 ///
@@ -182,7 +185,8 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
     });
     let resolution = Resolution {
         attitude: record.attitude.as_ref().map(|_| {
-            deviation.as_ref().map_or(angle_rounding, |found| found.attitude_noise.max(angle_rounding))
+            let rounding = allowances.attitude.rounding;
+            deviation.as_ref().map_or(rounding, |found| found.attitude_noise.max(rounding))
         }),
         rates: record
             .rates
@@ -326,11 +330,14 @@ fn allowances(
     };
     let rates = rounding(&record.rates, &writings.rates);
     let momentum = rounding(&record.momentum, &writings.momentum);
+    // a free body changes its angular velocity by no more of itself than it turns
+    let fastest = rows.iter().map(|row| row.omega.norm()).fold(0.0, f64::max);
+    let clock = unit_of_times(record).map_or(0.0, |unit| ROUNDED * unit * fastest);
     Allowances {
         tolerance: question.tolerance,
-        attitude: of(angle_rounding, question.noise.attitude),
-        rates: of(turned(reading.omega_frame, rates), relative),
-        momentum: of(turned(reading.momentum_frame, momentum), relative),
+        attitude: of(angle_rounding + clock, question.noise.attitude),
+        rates: of(turned(reading.omega_frame, rates) + clock, relative),
+        momentum: of(turned(reading.momentum_frame, momentum) + clock, relative),
     }
 }
 

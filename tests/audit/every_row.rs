@@ -240,6 +240,27 @@ fn an_exact_record_of_any_number_of_decimals_is_right() {
     }
 }
 
+/// At up to 1.3 rad/s half a millisecond is 6e-4 of a turn and of the angular velocity.
+#[test]
+fn times_of_an_even_clock_may_be_rounded_and_hide_no_more_than_that() {
+    let start = body().state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3)).unwrap();
+    let good = plain(&states(&body(), &start, 1.0 / 240.0, 1200));
+    let of = |change: &dyn Fn(&mut Trajectory)| {
+        let mut record = good.clone();
+        record.times.iter_mut().for_each(|t| *t = (*t * 1e3).round() / 1e3);
+        change(&mut record);
+        let verdict = audit(&record, &Question::new(Some(body()))).unwrap();
+        let is_named = verdict.faults.iter().any(|fault| matches!(fault, Fault::RoundedTimes { .. }));
+        assert!(is_named, "{:?}", verdict.faults);
+        verdict.judgement
+    };
+    assert_eq!(of(&|_| {}), Judgement::Right);
+    assert_eq!(of(&|record| record.rates = None), Judgement::Right);
+    assert_eq!(of(&|record| record.attitude = None), Judgement::Right);
+    assert_ne!(of(&|record| record.rates.as_mut().unwrap()[900][1] += 2e-3), Judgement::Right);
+    assert_ne!(of(&|record| quaternions(record)[900][1] += 2e-3), Judgement::Right);
+}
+
 /// Of few digits, attitudes leave open what they turn into the body, and not what was written in space.
 #[test]
 fn attitudes_of_few_digits_hide_no_fault_of_an_angular_velocity_in_space() {
