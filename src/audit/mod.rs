@@ -76,6 +76,25 @@ pub use verdict::{
 pub fn audit(record: &Trajectory, question: &Question) -> Result<Verdict, AuditError> {
     record.check()?;
     question.check(record)?;
+    let verdict = judged(record, question)?;
+    let is_open = question.claims.angles.is_none() && question.claims.angle_unit.is_none();
+    let Some(angles) = verdict.reading.angles.filter(|_| is_open && verdict.judgement != Judgement::Right)
+    else {
+        return Ok(verdict);
+    };
+    // the angles of a body that spins about one axis fit better, but for their beginnings, in the unit in which it turns by less
+    let mut in_other_unit = question.clone();
+    in_other_unit.claims.angle_unit = Some(match angles.unit {
+        AngleUnit::Radians => AngleUnit::Degrees,
+        AngleUnit::Degrees => AngleUnit::Radians,
+    });
+    match judged(record, &in_other_unit) {
+        Ok(other) if other.judgement == Judgement::Right => Ok(other),
+        _ => Ok(verdict),
+    }
+}
+
+fn judged(record: &Trajectory, question: &Question) -> Result<Verdict, AuditError> {
     let finding = detective::investigate(record, question)?;
     judge::judge(record, question, finding)
 }

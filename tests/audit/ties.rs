@@ -2,8 +2,8 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::audit::{
-    Attitudes, AuditError, Direction, Fault, Frame, Judgement, Missing, Noise, Question, Suspect, TieReason,
-    Trajectory, audit,
+    AngleUnit, Attitudes, AuditError, Direction, Fault, Frame, Judgement, Missing, Noise, Question, Suspect,
+    TieReason, Trajectory, audit,
 };
 use polhode::body::{Body, State};
 use polhode::flow::{ExactMotion, FreeMotion};
@@ -346,5 +346,27 @@ fn an_unstable_reading_of_a_stable_spin_does_not_make_it_wrong() {
         assert_eq!(verdict.judgement, Judgement::Undecided, "{moments:?}");
         question.noise = Noise { attitude: 2.0 * noise, rates: 2.0 * noise };
         assert_eq!(audit(&file, &question).unwrap().judgement, Judgement::Right, "{moments:?}");
+    }
+}
+
+/// A spin about the last of the angles looks alike in rad and in degrees, but for the rows at which the angle begins anew.
+#[test]
+fn an_angle_that_begins_anew_after_a_turn_tells_its_unit() {
+    let times: Vec<f64> = (0..800).map(|k| 0.05 * f64::from(k)).collect();
+    for (turn, unit) in [(std::f64::consts::TAU, AngleUnit::Radians), (360.0, AngleUnit::Degrees)] {
+        for part in [0.0014, 0.05, 0.21] {
+            let angle = |k: u32| {
+                let turns = part * f64::from(k);
+                (1e6 * turn * (turns - (turns + 0.5).floor())).round() / 1e6
+            };
+            let angles = (0..800).map(|k| [0.0, 0.0, angle(k)]).collect();
+            let record = Trajectory::new(times.clone())
+                .with_attitude(Attitudes::Angles(angles))
+                .with_rates(vec![[0.0, 0.0, part * turn / 0.05]; 800]);
+            let body = Body::free(Inertia::from_moments([1.0, 2.0, 3.0]).unwrap());
+            let verdict = audit(&record, &Question::new(Some(body))).unwrap();
+            assert_eq!(verdict.judgement, Judgement::Right, "{unit}, {part}");
+            assert_eq!(verdict.reading.angles.map(|angles| angles.unit), Some(unit), "{part}");
+        }
     }
 }
