@@ -94,6 +94,17 @@ fn attitudes_alone_are_enough() {
     assert_eq!((verdict.reading.attitude, verdict.tie), (Some(Direction::BodyToSpace), None));
 }
 
+/// Flat bodies turn their angular velocity as fast as they turn: what it is between two attitudes has to be found to the last digit.
+#[test]
+fn exact_attitudes_of_flat_bodies_are_right() {
+    for moments in [[0.014, 0.015, 0.027], [1.0, 1.2, 2.2], [1.0, 3.0, 3.9]] {
+        let (mut file, body) = plain(moments, tilted(), [0.3, -0.2, 1.0], Form::Quaternion);
+        file.rates = None;
+        let verdict = audit(&file, &Question::new(Some(body))).unwrap();
+        assert_eq!(verdict.judgement, Judgement::Right, "{moments:?}: {:?}", verdict.conservation);
+    }
+}
+
 #[test]
 fn angular_velocities_alone_get_the_verdict_that_they_allow() {
     let (mut file, body) = plain([1.0, 2.0, 2.5], tilted(), [0.4, 1.0, -0.3], Form::Matrix);
