@@ -80,6 +80,11 @@ pub enum Fault {
         /// How many rows.
         rows: usize,
     },
+    /// Angular velocities of other times than the attitudes beside them.
+    ShiftedRates {
+        /// By how much they are later, s.
+        lag: f64,
+    },
     /// Numbers of single precision.
     SinglePrecision,
     /// Numbers of few digits.
@@ -187,6 +192,14 @@ impl fmt::Display for Fault {
             Fault::NotFollowed => f.write_str(
                 "the forces turn the body too far over the record to compute its motion: are the units of times, moments and forces consistent?",
             ),
+            Fault::ShiftedRates { lag } => {
+                let side = if *lag < 0.0 { "earlier" } else { "later" };
+                let lag = lag.abs();
+                write!(
+                    f,
+                    "the angular velocities belong to times {lag:.2e} s {side} than the attitudes beside them, as at half a step; write both at one time"
+                )
+            }
             Fault::SinglePrecision => f.write_str("all numbers are of single precision; write doubles"),
             Fault::FewDigits { digits } => {
                 write!(f, "the numbers have {digits} significant digits; write 17")

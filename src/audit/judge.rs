@@ -10,6 +10,7 @@ use super::detective::Finding;
 use super::deviation::{Allowances, deviation, trace};
 use super::exchanged::exchanged;
 use super::faults::{discontinuity, faults, no_rotation, unit_of_times};
+use super::lag::lag;
 use super::misplaced::misplaced;
 use super::other_body::other_body as other_body_of;
 use super::other_torque::other_torque as other_torque_of;
@@ -169,6 +170,9 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
             explained.suspect()
         }
     };
+    if by_motion == Judgement::Wrong && suspect == Suspect::None {
+        faults.extend(lag(record, &reading, &body, told.as_ref(), &allowances));
+    }
     let judgement = if suspect == Suspect::None { by_motion } else { Judgement::Wrong };
     let counted = deviation.as_ref().filter(|_| free && has_omega);
     let flips = counted.map(|found| found.flips[0]);

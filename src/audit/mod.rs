@@ -17,6 +17,7 @@ mod exchanged;
 mod fault;
 mod faults;
 mod judge;
+mod lag;
 mod misplaced;
 mod motion;
 mod other_body;

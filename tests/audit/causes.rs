@@ -54,6 +54,29 @@ fn a_body_with_other_moments_is_named_with_them() {
     }
 }
 
+/// As a leapfrog writes them, of half a step later; not those that are off by a factor.
+#[test]
+fn angular_velocities_of_other_times_are_named_with_their_lag() {
+    let moments = [1.0, 2.0, 3.0];
+    let body = free(moments);
+    let attitude = UnitQuaternion::from_euler_angles(0.3, -0.8, 1.9);
+    let start = body.state(attitude, Vector3::new(0.4, 1.0, -0.3)).unwrap();
+    let rates = plain(&states(&body, &start, 0.025, 801)).rates.unwrap();
+    let found = |later: usize, factor: f64| {
+        let mut record = free_motion(moments);
+        let of = |row: usize| rates[2 * row + later].map(|x| x * factor);
+        record.rates = Some((0..400).map(of).collect());
+        let verdict = audit(&record, &Question::new(Some(free(moments)))).unwrap();
+        assert_eq!(verdict.judgement, Judgement::Wrong);
+        verdict.faults.iter().find_map(|fault| match fault {
+            Fault::ShiftedRates { lag } => Some(*lag),
+            _ => None,
+        })
+    };
+    assert!(found(1, 1.0).is_some_and(|lag| (lag / 0.025 - 1.0).abs() < 1e-3), "{:?}", found(1, 1.0));
+    assert_eq!(found(0, 1.01), None);
+}
+
 #[test]
 fn a_torque_that_is_not_told_is_named_with_its_size() {
     let torque = Vector3::new(2e-3, -1e-3, 3e-3);
