@@ -11,13 +11,14 @@ use std::borrow::Cow;
 use super::bodies::{Told, reordered};
 use super::candidates::{self, ORDERS};
 use super::columns::{Columns, Defects, Source};
-use super::program::{Dynamics, Law, Program, Turn};
-use super::rows::Windows;
+use super::program::{Dynamics, FARTHEST, Law, Program, Turn};
+use super::rows::{Windows, typical_turn};
 use super::{
     AuditError, Convention, Direction, Frame, Question, Ranked, RateUnit, Reading, Suspect, Trajectory,
     Turns, shape,
 };
 use crate::body::{Body, Problem};
+use crate::rotation::Vec3;
 
 /// A reading whose kinematics leave more than this many times what the best leave is not tried, rad.
 const KINEMATIC_RATIO: f64 = 3.0;
@@ -33,6 +34,12 @@ const SAME: f64 = 1.5;
 
 /// Defects below this are rounding and what the steps of the trial leave.
 const FLOOR: f64 = 1e-6;
+
+/// Defects above this are those of rows that have nothing to do with each other, rad or relative.
+const LOST: f64 = 0.3;
+
+/// Rows between which the body or its angular velocity turns by less are near each other, rad.
+const NEAR: f64 = 1.0;
 
 /// A mistake is named where it leaves less than this part of what the best reading leaves.
 const CONVICTED: f64 = 0.2;
@@ -56,6 +63,8 @@ pub(super) struct Finding {
     pub(super) tied: usize,
     /// A mistake that explains what no reading does.
     pub(super) mistake: Option<Hypothesis>,
+    /// The turn between rows, rad, where it is too far for any reading to be told; the first is then what is claimed or usual.
+    pub(super) way: Option<f64>,
 }
 
 pub(super) fn investigate(record: &Trajectory, question: &Question) -> Result<Finding, AuditError> {
@@ -88,12 +97,14 @@ pub(super) fn investigate(record: &Trajectory, question: &Question) -> Result<Fi
         return Err(if case.told.is_some() { AuditError::NoStart } else { AuditError::NoBody });
     }
     case.sort(&mut right);
-    let tied = case.tied(&right);
+    let way = case.way_without_trace(&right[0].defects);
+    let tied = if way.is_some() { right.len() } else { case.tied(&right) };
     right[..tied].sort_by_key(|found| Reverse(case.preference(&found.reading)));
+    let tied = if way.is_some() { 1 } else { tied };
     let best = right[0].clone();
     let ranking = right.iter().take(MOST_TRIED).map(|found| case.ranked(found, &best)).collect();
-    let mistake = case.mistake(&readings, &best);
-    Ok(Finding { right, ranking, tied, mistake })
+    let mistake = if way.is_some() { None } else { case.mistake(&readings, &best) };
+    Ok(Finding { right, ranking, tied, mistake, way })
 }
 
 /// The body in the orders of its moments that are to be tried.
@@ -260,6 +271,19 @@ impl Case<'_> {
                 by
             }
         });
+    }
+
+    /// The turn between rows, rad, where no program was followed so far, the best reading leaves what any would, and rows are not
+    /// near each other as they are where a unit of time is wrong.
+    fn way_without_trace(&self, best: &Defects) -> Option<f64> {
+        let Trajectory { times, rates, .. } = self.columns.record;
+        let rates = rates.as_ref()?;
+        let span = times.last()? - times.first()?;
+        let squares = rates.iter().map(|w| Vec3(*w).norm_squared()).sum::<f64>() / rates.len() as f64;
+        let unit = self.claims.rate_unit.unwrap_or_default().radians_per_second(1.0);
+        let way = squares.sqrt() * unit * span / (times.len() - 1) as f64;
+        let is_lost = best.attitude.or(best.rates)? > LOST && typical_turn(self.columns.record) > NEAR;
+        (way > FARTHEST && is_lost).then_some(way)
     }
 
     /// How many of the first leave the same.

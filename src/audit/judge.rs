@@ -131,9 +131,10 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
         faults.push(fault);
     }
     // of attitudes alone nobody knows which way they turn from row to row, nor how often
-    let angle = if has_omega { 0.0 } else { typical_turn(record) };
+    let angle = finding.way.unwrap_or_else(|| if has_omega { 0.0 } else { typical_turn(record) });
     if by_motion == Judgement::Wrong && angle > FRAC_PI_2 {
         by_motion = Judgement::Undecided;
+        faults.retain(|fault| !matches!(fault, Fault::TooCoarse { .. }));
         faults.push(Fault::TooCoarse { angle });
     }
     // rates alone lead a search for the body astray now and then
@@ -154,7 +155,7 @@ fn judge_first(record: &Trajectory, question: &Question, finding: &Finding) -> R
             }
         }
     }
-    let claim = broken_claim(&reading, finding, question);
+    let claim = broken_claim(&reading, finding, question).filter(|_| finding.way.is_none());
     let mut explained = Explained::default();
     let suspect = match (&finding.mistake, claim) {
         // what noise explains needs no mistake

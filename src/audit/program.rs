@@ -61,6 +61,9 @@ const STEP: f64 = 0.06;
 /// Most steps between two rows; a way of more turns tells nothing.
 const MOST_STEPS: f64 = 512.0;
 
+/// That way, rad.
+pub(super) const FARTHEST: f64 = MOST_STEPS * STEP;
+
 /// Attitude, body → space, and what the program moves: the momentum in its frame, or ω itself.
 type Phase = (Quat<f64>, Vec3<f64>);
 

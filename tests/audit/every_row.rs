@@ -2,8 +2,8 @@
 
 use nalgebra::{UnitQuaternion, Vector3};
 use polhode::audit::{
-    Attitudes, Digits, Fault, Frame, Judgement, Misplaced, Noise, Question, RateUnit, Reading, Trajectory,
-    audit,
+    Attitudes, Digits, Fault, Frame, Judgement, Misplaced, Noise, Question, RateUnit, Reading, Suspect,
+    Trajectory, audit,
 };
 use polhode::body::Body;
 use polhode::inertia::Inertia;
@@ -238,6 +238,18 @@ fn an_exact_record_of_any_number_of_decimals_is_right() {
         record.rates.as_mut().unwrap()[200][1] += (4.0 / unit).max(4e-6);
         assert_ne!(judged(&record), Judgement::Right, "{decimals}, and one number off by more");
     }
+}
+
+/// Over the 90 rad between rows no reading is told by its equations, and that of this library is taken.
+#[test]
+fn rows_that_are_many_turns_apart_are_not_wrong() {
+    let start = body().state(UnitQuaternion::identity(), Vector3::new(0.4, 1.0, -0.3)).unwrap();
+    let record = plain(&states(&body(), &start, 80.0, 60));
+    assert_eq!(judged(&record), Judgement::Right);
+    let other = Body::free(Inertia::from_moments([1.0, 2.0, 2.9]).unwrap());
+    let verdict = audit(&record, &Question::new(Some(other))).unwrap();
+    assert_eq!((verdict.judgement, verdict.suspect), (Judgement::Undecided, Suspect::None));
+    assert!(verdict.faults.iter().any(|fault| matches!(fault, Fault::TooCoarse { angle } if *angle > 80.0)));
 }
 
 /// At up to 1.3 rad/s half a millisecond is 6e-4 of a turn and of the angular velocity.
