@@ -229,8 +229,8 @@ impl Audit {
             question.wheels.clone_from(&wheels);
             let verdict =
                 audit(&record, &question).map_err(|error| Error::Input(format!("{place}: {error}")))?;
-            if verdict.judgement != Judgement::Right && unit_is_open {
-                notes.extend(clock(&record, &verdict.reading));
+            if verdict.judgement != Judgement::Right {
+                notes.extend(clock(&record, &verdict.reading, unit_is_open));
             }
             let allowed = (self.tolerance, question.noise.attitude > 0.0);
             let against = golden.as_ref().map(|golden| golden.difference(&place, &record, &verdict, allowed));
@@ -299,13 +299,23 @@ fn noise(text: &str) -> Result<Noise, String> {
     Ok(Noise { attitude, rates })
 }
 
-/// In which unit of time the attitudes turn as the angular velocities say, where that is not s.
-fn clock(record: &Trajectory, reading: &Reading) -> Option<String> {
+/// In which unit of time the attitudes turn as the angular velocities say, where that is not s and the unit is open; or that they
+/// turn twice or half as fast.
+fn clock(record: &Trajectory, reading: &Reading, unit_is_open: bool) -> Option<String> {
     record.rates.as_ref()?;
+    let length = step_length(record, None)?;
     let rate = reading.rate_unit.unwrap_or_default().radians_per_second(1.0);
-    let unit = step_length(record, None)? / rate;
+    // where the equations of motion are broken too, the unit of the rates may have been read wrongly
+    let is_off_by = |times: f64| [rate, 1.0].iter().any(|rate| (length / (rate * times) - 1.0).abs() < 0.02);
+    if let Some((_, words)) = [(2.0, "twice"), (0.5, "half")].into_iter().find(|(times, _)| is_off_by(*times))
+    {
+        return Some(format!(
+            "the attitudes turn {words} as fast as the angular velocities say; is the 1/2 of q' = 1/2 q omega there once?"
+        ));
+    }
     let known = [(1e-3, "ms"), (1e-6, "us"), (1e-9, "ns")];
-    let (_, name) = known.into_iter().find(|(seconds, _)| (unit / seconds - 1.0).abs() < 0.1)?;
+    let is_near = |seconds: f64| unit_is_open && (length / rate / seconds - 1.0).abs() < 0.1;
+    let (_, name) = known.into_iter().find(|(seconds, _)| is_near(*seconds))?;
     Some(format!(
         "the times have no unit; attitudes and angular velocities agree if they are in {name}: --time-unit {name}"
     ))

@@ -462,6 +462,22 @@ fn readings_that_are_wrong_alike_are_not_laid_to_noise() {
     );
 }
 
+/// A program without the 1/2 of q' = 1/2 q ω turns its attitudes twice as fast: here the rates are half of those of the attitudes.
+#[test]
+fn attitudes_that_turn_twice_as_fast_as_their_rates_are_told_so() {
+    let scratch = Scratch::new("audit-twice");
+    for (factor, words) in [(0.5, Some("turn twice as fast")), (2.0, Some("turn half as fast")), (1.1, None)]
+    {
+        let scaled = rows("").into_iter().map(|r| [&r[..5], &[5, 6, 7].map(|n| factor * r[n])[..]].concat());
+        let record = scratch.file("run.csv", table("t,q_w,q_x,q_y,q_z,wx,wy,wz", scaled));
+        let answer = run(&format!("audit {record} {BODY} --format json"));
+        let told = verdict(&answer)["warnings"].to_string();
+        assert_eq!(answer.code, 1, "{told}");
+        assert_eq!(words.is_some_and(|words| told.contains(words)), words.is_some(), "{factor}: {told}");
+        assert_eq!(told.contains(" as fast as the angular"), words.is_some(), "{factor}: {told}");
+    }
+}
+
 /// What is not read is not right; what stands twice is not read.
 #[test]
 fn columns_that_are_not_read_are_named_and_none_stands_twice() {
