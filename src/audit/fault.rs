@@ -85,6 +85,11 @@ pub enum Fault {
         /// By how much they are later, s.
         lag: f64,
     },
+    /// Angular velocities that differ from those of the attitudes beside them by one factor.
+    ScaledRates {
+        /// Those that are written over those of the attitudes.
+        factor: f64,
+    },
     /// Numbers of single precision.
     SinglePrecision,
     /// Numbers of few digits.
@@ -200,6 +205,10 @@ impl fmt::Display for Fault {
                     "the angular velocities belong to times {lag:.2e} s {side} than the attitudes beside them, as at half a step; write both at one time"
                 )
             }
+            Fault::ScaledRates { factor } => write!(
+                f,
+                "the angular velocities are {factor:.6} times those at which the attitudes turn; is a clock, a unit or the scale of a sensor off?"
+            ),
             Fault::SinglePrecision => f.write_str("all numbers are of single precision; write doubles"),
             Fault::FewDigits { digits } => {
                 write!(f, "the numbers have {digits} significant digits; write 17")

@@ -351,7 +351,9 @@ fn tie_reason(record: &Trajectory, finding: &Finding, body: &Body) -> TieReason 
     let tied = &finding.right[..finding.tied];
     let first = tied[0].reading;
     let by_moments = tied.iter().all(|found| Reading { moments: first.moments, ..found.reading } == first);
-    if by_moments && body.inertia().symmetry() != Symmetry::Asymmetric {
+    let symmetry = body.inertia().symmetry();
+    // a sphere spins about one axis whatever is recorded
+    if by_moments && symmetry != Symmetry::Asymmetric || symmetry == Symmetry::Spherical {
         return TieReason::SymmetricBody;
     }
     let every: Vec<usize> = (0..record.times.len()).step_by(record.times.len().div_ceil(100)).collect();

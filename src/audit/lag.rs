@@ -1,4 +1,4 @@
-//! Angular velocities of other times than those of the attitudes beside them.
+//! Angular velocities of another scale, or of other times, than those of the attitudes beside them.
 
 use super::bodies::Told;
 use super::deviation::{Allowances, GROUPS};
@@ -18,11 +18,11 @@ const STEP: f64 = 1e-4;
 
 const ITERATIONS: usize = 4;
 
-/// The part of the deviations that is left where a lag explains them.
+/// The part of the deviations that is left where a factor or a lag explains them.
 const LEFT: f64 = 0.1;
 
-/// The fault of a record whose attitudes are a motion of the body, and whose angular velocities are that motion's at times that are
-/// earlier or later by one lag, such as half a step; `None` of any other.
+/// The fault of a record whose attitudes are a motion of the body, and whose angular velocities are those of that motion times one
+/// factor, or at times that are earlier or later by one lag, such as half a step; `None` of any other.
 pub(super) fn lag(
     record: &Trajectory,
     reading: &Reading,
@@ -51,7 +51,16 @@ pub(super) fn lag(
     let left = |exact: &[Vec3<f64>]| {
         rows.iter().zip(exact).map(|(row, omega)| (row.omega - *omega).norm_squared()).sum::<f64>()
     };
+    let is_explained = |exact: &[Vec3<f64>], before: f64| left(exact) < LEFT * LEFT * before;
     let before = left(&exact);
+    let sums = rows.iter().zip(&exact).fold((0.0, 0.0), |(along, square), (row, omega)| {
+        (along + row.omega.dot(*omega), square + omega.norm_squared())
+    });
+    let factor = sums.0 / sums.1;
+    let scaled: Vec<Vec3<f64>> = exact.iter().map(|omega| *omega * factor).collect();
+    if is_explained(&scaled, before) {
+        return Some(Fault::ScaledRates { factor });
+    }
     for _ in 0..ITERATIONS {
         let later = rates_at(lag + step)?;
         let (mut along, mut square) = (0.0, 0.0);
@@ -67,5 +76,5 @@ pub(super) fn lag(
         }
         exact = rates_at(lag)?;
     }
-    (left(&exact) < LEFT * LEFT * before).then_some(Fault::ShiftedRates { lag })
+    is_explained(&exact, before).then_some(Fault::ShiftedRates { lag })
 }

@@ -215,7 +215,7 @@ fn no_integrator_is_named_from_attitudes_alone() {
     }
 }
 
-/// Of a sphere a method errs as a clock does.
+/// Of a sphere a method errs as a clock does. The factor by which the clock is off is told.
 #[test]
 fn a_clock_that_is_off_is_no_integrator() {
     for (moments, factor) in [
@@ -229,5 +229,8 @@ fn a_clock_that_is_off_is_no_integrator() {
         let verdict = audit(&record, &Question::new(Some(free(moments)))).unwrap();
         assert_eq!(verdict.judgement, Judgement::Wrong);
         assert!(verdict.signature.is_none(), "{moments:?} {factor}: {:?}", verdict.signature);
+        // the same rates beside attitudes that turn more slowly
+        let is_told = |fault: &Fault| matches!(fault, Fault::ScaledRates { factor: found } if (found / factor - 1.0).abs() < 1e-7);
+        assert!(verdict.faults.iter().any(is_told), "{moments:?} {factor}: {:?}", verdict.faults);
     }
 }

@@ -57,6 +57,15 @@ fn equal_moments_tie_and_nothing_else_does() {
     assert_eq!((verdict.judgement, verdict.suspect), (Judgement::Right, Suspect::None));
 }
 
+/// No other attitude at the start would make a sphere tumble.
+#[test]
+fn a_sphere_ties_by_its_moments() {
+    let (file, body) = plain([2.0, 2.0, 2.0], tilted(), [0.4, 1.0, -0.3], Form::Quaternion);
+    let verdict = audit(&file, &Question::new(Some(body))).unwrap();
+    assert_eq!(verdict.tie.map(|tie| tie.reason), Some(TieReason::SymmetricBody));
+    assert_eq!(verdict.judgement, Judgement::Right);
+}
+
 /// About z of both frames: axes of ω are the same, and no moment is felt.
 #[test]
 fn a_steady_spin_tells_neither_frame_nor_moments() {
