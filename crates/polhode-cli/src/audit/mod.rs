@@ -50,12 +50,13 @@ const EXAMPLES: &str = "Examples:
 /// row.
 ///
 /// right: every row and every column that is read agrees with one motion of the
-/// body, within --tolerance, within the precision of its digits, or within the
-/// noise that --noise declares. A record that agrees only within a noise that is
-/// not declared is undecided. A record that contradicts what a name or an option
-/// states (a direction, a frame, a unit, the axes of roll, pitch and yaw, the order
-/// of the moments) is wrong. With --against the verdict is undecided unless all
-/// times of one file are in the other.
+/// body, within --tolerance, within the precision of its digits, those of the times
+/// included, or within the noise that --noise declares. A record that agrees only
+/// within a noise that is not declared is undecided, and so are attitudes alone
+/// that turn by less than ten times what they may be off. A record that contradicts
+/// what a name or an option states (a direction, a frame, a unit, the axes of roll,
+/// pitch and yaw, the order of the moments) is wrong. With --against the verdict is
+/// undecided unless all times of one file are in the other.
 ///
 /// suspect: what explains the errors.
 ///
