@@ -2,8 +2,7 @@
 //! nothing of the judge.
 
 use nalgebra::{UnitQuaternion, Vector3};
-use polhode::body::{Body, Force};
-use polhode::inertia::Inertia;
+use polhode::body::Force;
 use polhode::method::method;
 use polhode::num::Random;
 use polhode::rotation::{Quat, Vec3};
@@ -13,16 +12,11 @@ use polhode_files::error::{Error, unexpected};
 use super::motion::{Row, exact, generic};
 use super::specimen::Specimen;
 
-/// A fault: its name, and what it does.
-pub(super) type Fault = (&'static str, fn(&mut Draft, &mut Random) -> Result<(), Error>);
+/// What is done to a record.
+type Spoil = fn(&mut Specimen, &mut Random) -> Result<(), Error>;
 
-/// A record that a fault is put into.
-pub(super) struct Draft {
-    moments: [f64; 3],
-    start: (UnitQuaternion<f64>, Vector3<f64>),
-    interval: f64,
-    rows: Vec<Row>,
-}
+/// A fault: its name, and what it does.
+pub(super) type Fault = (&'static str, Spoil);
 
 pub(super) const FAULTS: [Fault; 42] = [
     ("attitude of one row lost", |x, r| x.one(r, |row, _| row.attitude = Quat::identity())),
@@ -141,10 +135,9 @@ pub(super) const FAULTS: [Fault; 42] = [
     ("a moment of inertia 1 % off", |x, r| x.of_another_body(r, 1e-2)),
     ("a moment of inertia 0.1 % off", |x, r| x.of_another_body(r, 1e-3)),
     ("a weak torque that is not told", |x, r| {
-        let body = Body::free(Inertia::from_moments(x.moments).map_err(unexpected)?);
         let size = 1e-3 * x.start.1.norm_squared() * x.moments[0];
         let force = Force::constant_torque_body(generic(r) * size).map_err(unexpected)?;
-        let body = body.with(force);
+        let body = x.body()?.with(force);
         let start = body.state(x.start.0, x.start.1).map_err(unexpected)?;
         let rk8 = method("rk8").map_err(unexpected)?;
         let mut run =
@@ -159,13 +152,10 @@ pub(super) const FAULTS: [Fault; 42] = [
 ];
 
 /// The motion `right`, some hundred rows of it, with a fault.
-pub(super) fn faulty(right: Specimen, (_, put): &Fault, random: &mut Random) -> Result<Specimen, Error> {
-    let mut draft = Draft::of(right);
-    put(&mut draft, random)?;
-    Ok(draft.done())
+pub(super) fn faulty(mut right: Specimen, (_, put): &Fault, random: &mut Random) -> Result<Specimen, Error> {
+    put(&mut right, random)?;
+    Ok(right)
 }
-
-type Spoil = fn(&mut Draft, &mut Random) -> Result<(), Error>;
 
 /// Ways in which single rows of a long record are bad.
 const BAD: [Spoil; 5] = [
@@ -183,29 +173,19 @@ const BAD: [Spoil; 5] = [
 ];
 
 /// The long record `right` with `bad` bad rows of one kind, spread at random.
-pub(super) fn bad_rows(right: Specimen, bad: usize, random: &mut Random) -> Result<Specimen, Error> {
+pub(super) fn bad_rows(mut right: Specimen, bad: usize, random: &mut Random) -> Result<Specimen, Error> {
     let kind = BAD[random.below(BAD.len() as u64) as usize];
-    let mut draft = Draft::of(right);
-    (0..bad).try_for_each(|_| kind(&mut draft, random))?;
-    Ok(draft.done())
+    (0..bad).try_for_each(|_| kind(&mut right, random))?;
+    Ok(right)
 }
 
-impl Draft {
-    fn of(right: Specimen) -> Self {
-        let Specimen { moments, start, interval, rows, .. } = right;
-        Draft { moments, start, interval, rows }
-    }
-
-    fn done(self) -> Specimen {
-        Specimen { moments: self.moments, start: self.start, interval: self.interval, rows: self.rows }
-    }
-
+impl Specimen {
     fn motion_from(
         &self,
         (attitude, omega): (UnitQuaternion<f64>, Vector3<f64>),
         count: u64,
     ) -> Result<Vec<Row>, Error> {
-        let body = Body::free(Inertia::from_moments(self.moments).map_err(unexpected)?);
+        let body = self.body()?;
         let start = body.state(attitude, omega).map_err(unexpected)?;
         exact(&body, &start, self.interval, count)
     }
