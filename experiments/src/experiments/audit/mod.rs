@@ -126,12 +126,7 @@ fn one(random: &mut Random) -> Result<Found, Error> {
         form,
         how,
         method: motion.method,
-        written: match how {
-            Writing { noise, .. } if noise > 0.0 => "noise",
-            Writing { single: true, .. } => "float32",
-            Writing { digits: 6..12, .. } => "6 to 11 digits",
-            _ => "12 to 17 digits",
-        },
+        written: how.limit(),
         first: verdict.reading == truth || tie_exact && tie.contains(&truth),
         tied: !tie.is_empty(),
         tie_exact,

@@ -50,12 +50,7 @@ impl Columns {
 impl Style {
     /// What limits the numbers.
     pub(super) fn limit(self) -> &'static str {
-        match self.writing {
-            _ if self.noise > 0.0 => "declared noise",
-            Writing { single: true, .. } => "float32",
-            Writing { digits: 6..12, .. } => "6 to 11 digits",
-            _ => "12 to 17 digits",
-        }
+        if self.noise > 0.0 { "declared noise" } else { self.writing.limit() }
     }
 
     /// Any columns and digits; with noise in one of three.

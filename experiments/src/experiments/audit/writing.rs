@@ -41,6 +41,16 @@ impl Writing {
         (0.5 * libm::exp10(1.0 - self.digits as f64)).max(single).max(self.noise)
     }
 
+    /// What limits the numbers.
+    pub(super) fn limit(self) -> &'static str {
+        match self {
+            Writing { noise, .. } if noise > 0.0 => "noise",
+            Writing { single: true, .. } => "float32",
+            Writing { digits: 6..12, .. } => "6 to 11 digits",
+            _ => "12 to 17 digits",
+        }
+    }
+
     pub(super) fn number(self, random: &mut Random, x: f64, size: f64) -> f64 {
         let noisy = if self.noise > 0.0 { x + self.noise * size * random.normal() } else { x };
         let kept = if self.single { f64::from(noisy as f32) } else { noisy };
