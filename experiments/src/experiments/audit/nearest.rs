@@ -28,13 +28,7 @@ pub(super) fn distance(body: &Body, rows: &[Row]) -> Option<f64> {
         let omega = Vector3::from(first.omega) + Vector3::new(p[3], p[4], p[5]) * speed;
         FreeMotion::from_omega(body.inertia(), attitude.into(), omega).ok()
     };
-    let apart = |motion: &FreeMotion, row: &Row| -> Option<[f64; 6]> {
-        let state = motion.at(row.t).ok()?;
-        let turn = state.attitude.conjugate() * row.attitude.normalized();
-        let turn = turn.v * if turn.w < 0.0 { -2.0 } else { 2.0 };
-        let omega: Vector3<f64> = (Vector3::from(row.omega) - body.omega_body(&state)) / speed;
-        Some([turn[0], turn[1], turn[2], omega.x, omega.y, omega.z])
-    };
+    let apart = |motion: &FreeMotion, row: &Row| apart(body, motion, row, speed);
     let every = rows.len().div_ceil(FITTED);
     let mut p = Vector6::zeros();
     for _ in 0..ROUNDS {
@@ -64,4 +58,14 @@ pub(super) fn distance(body: &Body, rows: &[Row]) -> Option<f64> {
         Some(rotation_angle(state.attitude, row.attitude).max(omega))
     });
     distances.collect::<Option<Vec<f64>>>().map(largest).filter(|x| x.is_finite())
+}
+
+/// The turn from the attitude of `motion` to that of `row`, for small ones its vector in rad, and the difference of their angular
+/// velocities over `size`.
+pub(super) fn apart(body: &Body, motion: &FreeMotion, row: &Row, size: f64) -> Option<[f64; 6]> {
+    let state = motion.at(row.t).ok()?;
+    let turn = state.attitude.conjugate() * row.attitude.normalized();
+    let turn = turn.v * if turn.w < 0.0 { -2.0 } else { 2.0 };
+    let omega: Vector3<f64> = (Vector3::from(row.omega) - body.omega_body(&state)) / size;
+    Some([turn[0], turn[1], turn[2], omega.x, omega.y, omega.z])
 }

@@ -9,6 +9,7 @@ use polhode_files::error::{Error, unexpected};
 
 use super::TOLERANCE;
 use super::motion::Row;
+use super::nearest::apart;
 use super::specimen::{Distance, Specimen};
 use super::writing::{Form, Writing, convention, one_of, written};
 
@@ -206,15 +207,11 @@ fn least_excess(specimen: &Specimen, columns: Columns, limits: Distance) -> Opti
         let omega = start.1 + Vector3::new(p[3], p[4], p[5]) * size;
         FreeMotion::from_omega(body.inertia(), start.0 * turn, omega).ok()
     };
-    let (of_attitude, of_rates) = (columns != Columns::Rates, columns != Columns::Attitude);
+    let a = if columns == Columns::Rates { 0.0 } else { 1.0 / limits.attitude };
+    let b = if columns == Columns::Attitude { 0.0 } else { 1.0 / limits.rates };
     let apart = |motion: &FreeMotion, row: &Row| -> Option<[f64; 6]> {
-        let state = motion.at(row.t).ok()?;
-        let turn = state.attitude.conjugate() * row.attitude.normalized();
-        let turn = turn.v * if turn.w < 0.0 { -2.0 } else { 2.0 };
-        let omega: Vector3<f64> = (Vector3::from(row.omega) - body.omega_body(&state)) / size;
-        let a = if of_attitude { 1.0 / limits.attitude } else { 0.0 };
-        let b = if of_rates { 1.0 / limits.rates } else { 0.0 };
-        Some([turn[0] * a, turn[1] * a, turn[2] * a, omega.x * b, omega.y * b, omega.z * b])
+        let [p, q, r, x, y, z] = apart(&body, motion, row, size)?;
+        Some([p * a, q * a, r * a, x * b, y * b, z * b])
     };
     let mut p = Vector6::zeros();
     let mut weights = vec![1.0; rows.len()];
