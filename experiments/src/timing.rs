@@ -1,4 +1,4 @@
-//! Processor time of a step, beside that of a step of the classical Runge–Kutta method in the same moments.
+//! Processor time of a step, beside that of a step of the classical Runge–Kutta method in the same moments; and the time of any work.
 
 use std::time::Instant;
 
@@ -54,6 +54,21 @@ impl StepTime {
         let clock = Clock { start: truth.start_time(), step };
         StepTime::measure(timed, truth.body(), truth.start(), clock)
     }
+}
+
+/// The least time of `repeat` runs of `work`, s.
+pub(crate) fn best(repeat: usize, work: &dyn Fn()) -> f64 {
+    let one = || {
+        let clock = Instant::now();
+        work();
+        clock.elapsed().as_secs_f64()
+    };
+    (0..repeat).map(|_| one()).fold(f64::INFINITY, f64::min)
+}
+
+/// Makes sure that the value is worked out.
+pub(crate) fn discard<T>(value: T) {
+    let _ = std::hint::black_box(value);
 }
 
 struct Contestant {

@@ -2,7 +2,6 @@
 //! degenerate case; with golden trajectories for other projects.
 
 use std::collections::BTreeMap;
-use std::time::Instant;
 
 use polhode::body::{Body, Point, State, Time};
 use polhode::catalogue;
@@ -17,6 +16,7 @@ use polhode_pages::table::{Column, Table, row, to_digits};
 
 use crate::experiment::{Context, Report};
 use crate::statistics::larger;
+use crate::timing::{best, discard};
 
 const FIXTURES: &str = include_str!("../../data/free_body.csv");
 
@@ -360,8 +360,6 @@ fn timing() -> Result<Table, Error> {
         let motion = set_up().map_err(|error| failed(&error))?;
         let complement = motion.character().map_err(|error| failed(&error))?.complement;
         let times: Vec<f64> = (0..100_000).map(|n| 12.345 * f64::from(n)).collect();
-        let best =
-            |repeat: usize, work: &dyn Fn()| (0..repeat).map(|_| seconds(work)).fold(f64::INFINITY, f64::min);
         let set_up_time = best(200, &|| (0..10).for_each(|_| discard(set_up()))) / 10.0;
         let burst = &times[..256];
         let one_by_one = || burst.iter().for_each(|&t| discard(motion.at(t)));
@@ -370,15 +368,4 @@ fn timing() -> Result<Table, Error> {
         table.push(row![name, complement, set_up_time * 1e9, at_time * 1e9, many * 1e3]);
     }
     Ok(table)
-}
-
-/// Makes sure that the value is worked out.
-fn discard<T>(value: T) {
-    let _ = std::hint::black_box(value);
-}
-
-fn seconds(work: &dyn Fn()) -> f64 {
-    let clock = Instant::now();
-    work();
-    clock.elapsed().as_secs_f64()
 }

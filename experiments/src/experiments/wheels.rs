@@ -15,12 +15,9 @@
 //! manoeuvre: Barba and Aubrun, AIAA J. 14 (1976) 1382; Gebman and Mingori, AIAA J. 14 (1976) 859; Hall and Rand, J. Guid. Control Dyn. 17
 //! (1994) 30. The body here is our own.
 
-use std::time::Instant;
-
 use nalgebra::Vector3;
 use polhode::body::{Body, Conserved, State, Wheel};
 use polhode::flow::{GyrostatMotion, Stability};
-
 use polhode::inertia::Inertia;
 use polhode::method::{AnyMethod, Claimed, Cost, method};
 use polhode::num::{Dd, Random};
@@ -34,6 +31,7 @@ use polhode_pages::table::{Column, Table, row};
 use super::contestants::{weighed, weight};
 use crate::experiment::{Context, Report};
 use crate::statistics::largest;
+use crate::timing::{best, discard};
 
 const SEED: u64 = 1899;
 
@@ -631,16 +629,8 @@ fn timing() -> Result<Table, Error> {
     let set_up = || GyrostatMotion::new(&body, &start);
     let motion = set_up().map_err(unexpected)?;
     let times: Vec<f64> = (0..64).map(|n| 12.345 * f64::from(n)).collect();
-    let least = |count: u32, work: &dyn Fn()| {
-        let burst = |_| {
-            let clock = Instant::now();
-            work();
-            clock.elapsed().as_secs_f64()
-        };
-        (0..count).map(burst).fold(f64::INFINITY, f64::min)
-    };
-    let made = least(50, &|| discard(set_up()));
-    let at = least(50, &|| times.iter().for_each(|&t| discard(motion.at(t)))) / times.len() as f64;
+    let made = best(50, &|| discard(set_up()));
+    let at = best(50, &|| times.iter().for_each(|&t| discard(motion.at(t)))) / times.len() as f64;
     let mut table = Table::new(
         "timing",
         "Cost of the closed form of a body with four wheels, least of many bursts on this machine.",
@@ -651,9 +641,4 @@ fn timing() -> Result<Table, Error> {
     );
     table.push(row![made * 1e6, at * 1e6]);
     Ok(table)
-}
-
-/// Makes sure that the value is worked out.
-fn discard<T>(value: T) {
-    let _ = std::hint::black_box(value);
 }

@@ -19,6 +19,7 @@ use polhode_pages::table::{Column, Table, row, to_digits};
 
 use crate::experiment::{Context, Report};
 use crate::statistics::larger;
+use crate::timing::{best, discard};
 use taylor::{Variational, relative_error};
 
 const FIXTURES: &str = include_str!("../../../data/derivative.csv");
@@ -353,18 +354,4 @@ fn covariance(context: &Context, report: &mut Report) -> Result<(), Error> {
     }
     report.tables.push(table);
     Ok(())
-}
-
-/// Makes sure that the value is worked out.
-fn discard<T>(value: T) {
-    let _ = std::hint::black_box(value);
-}
-
-fn best(repeat: usize, work: &dyn Fn()) -> f64 {
-    let one = || {
-        let clock = Instant::now();
-        work();
-        clock.elapsed().as_secs_f64()
-    };
-    (0..repeat).map(|_| one()).fold(f64::INFINITY, f64::min)
 }

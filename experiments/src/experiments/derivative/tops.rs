@@ -9,9 +9,10 @@ use polhode::rotation::{Quat, Vec3};
 use polhode_files::error::Error;
 use polhode_pages::table::{Column, Table, row};
 
-use super::{PROMISE, best, discard, failed};
+use super::{PROMISE, failed};
 use crate::experiment::{Context, Report};
 use crate::statistics::larger;
+use crate::timing::{best, discard};
 
 /// A top of the moments 1.25, 1.25 and 0.75 kg m² with the weight moment 2 N m, and its start.
 struct Start {

@@ -21,6 +21,7 @@ use self::clone::{Approach, Spin};
 use self::inputs::Published;
 use crate::experiment::{Context, Report};
 use crate::statistics::largest;
+use crate::timing::discard;
 
 const SEED: u64 = 2029;
 const HOUR: f64 = 3600.0;
@@ -379,7 +380,7 @@ fn accuracy(context: &Context, report: &mut Report, until: f64) -> Result<(), Er
         for _ in 0..5 {
             let clock = Instant::now();
             for one in &approaches {
-                let _ = std::hint::black_box(one.passed(name)?);
+                discard(one.passed(name)?);
             }
             least = least.min(clock.elapsed().as_secs_f64() / clones as f64);
         }
