@@ -135,7 +135,7 @@ fn kept(context: &Context, report: &mut Report) -> Result<(), Error> {
             parts.push((name, loss));
         }
     }
-    let found = context.in_parallel(parts.clone(), |(name, loss)| {
+    let found = context.in_parallel(parts.clone(), |(name, loss)| -> Result<(f64, u64, f64), Error> {
         let (body, point) = start(name, 1.2)?;
         let method = method(loss, STRANG)?;
         let run = Run::from_point(&method, &body, point.to_f64(), Clock::new(1.0 / PER_RADIAN));
@@ -145,8 +145,7 @@ fn kept(context: &Context, report: &mut Report) -> Result<(), Error> {
         for look in 1..=1000 {
             let sample = run.advance_to(steps / 1000 * look).map_err(unexpected)?;
             let far = (sample.point.to_dd().momentum_space() - space).norm() / space.norm();
-            let far = far.to_f64();
-            momentum = larger(momentum, far);
+            momentum = larger(momentum, far.to_f64());
             let energy = body.energy(&sample.state);
             rises += u64::from(energy.is_nan() || energy > least * (1.0 + RISE));
             least = least.min(energy);
@@ -156,7 +155,7 @@ fn kept(context: &Context, report: &mut Report) -> Result<(), Error> {
         Ok((momentum, rises, libm::atan2(libm::hypot(m[0], m[1]), m[2].abs())))
     });
     for ((name, loss), found) in parts.into_iter().zip(found) {
-        let (momentum, rises, lean): (f64, u64, f64) = found.map_err(|error: Error| error)?;
+        let (momentum, rises, lean) = found?;
         table.push(row![name, loss, momentum, rises, lean]);
         report.checks += 2;
         if momentum.is_nan() || momentum > KEPT {
