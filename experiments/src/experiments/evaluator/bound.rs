@@ -150,10 +150,10 @@ impl Tallies {
         all
     }
 
-    /// The largest error, of the attitude or of the angular velocity, and the median.
+    /// The largest error of the attitude, and the median.
     #[cfg(test)]
-    pub(super) fn largest_and_median(&self, quantity: usize) -> [f64; 2] {
-        let spread = &self.all().spreads[quantity];
+    pub(super) fn largest_and_median(&self) -> [f64; 2] {
+        let [spread, _] = &self.all().spreads;
         [spread.largest, spread.quantile(0.5)]
     }
 }

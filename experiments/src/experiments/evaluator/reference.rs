@@ -161,12 +161,14 @@ impl Reference {
         let psi = self.twist[0] * t;
         let whole = phase.round();
         let rest = phase - whole;
+        let part =
+            |k: [Dd; TERMS], f: [Dd; TERMS]| (0..self.terms).fold(Dd::ZERO, |sum, n| sum + k[n] * f[n]);
         let (z, w, psi) = if matches!(self.form, Form::End | Form::Direct) {
             let (s, c) = (rest * Dd::TAU).sin_cos();
             let (even, odd) = harmonics::<-1>(s, c);
             (
-                [dot(self.z[0], even[0]), dot(self.z[1], even[1])],
-                [dot(self.w[0], odd[1]), dot(self.w[1], odd[0])],
+                [part(self.z[0], even[0]), part(self.z[1], even[1])],
+                [part(self.w[0], odd[1]), part(self.w[1], odd[0])],
                 psi,
             )
         } else {
@@ -174,8 +176,6 @@ impl Reference {
             let shrunk = Dd::ONE / grown;
             let (s, c) = ((grown - shrunk) * 0.5, (grown + shrunk) * 0.5);
             let (_, odd) = harmonics::<1>(s, c);
-            let part =
-                |k: [Dd; TERMS], f: [Dd; TERMS]| (0..self.terms).fold(Dd::ZERO, |sum, n| sum + k[n] * f[n]);
             let sign = if whole.rem_euclid(2.0) == 0.0 { 1.0 } else { -1.0 };
             (
                 [part(self.z[0], odd[0]), part(self.z[1], odd[1])],
@@ -268,10 +268,6 @@ fn pair(x: Dd, y: Dd) -> (Dd, Dd) {
 
 fn total(v: [Dd; TERMS]) -> Dd {
     v.into_iter().rev().fold(Dd::ZERO, |sum, x| sum + x)
-}
-
-fn dot(k: [Dd; TERMS], f: [Dd; TERMS]) -> Dd {
-    (0..TERMS).fold(Dd::ZERO, |sum, n| sum + k[n] * f[n])
 }
 
 /// Cosines and sines of the even multiples and of the odd ones, circular for `SIGN` −1 and hyperbolic for 1.

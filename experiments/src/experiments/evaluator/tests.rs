@@ -15,14 +15,14 @@ fn some() -> impl Iterator<Item = u64> {
 
 #[test]
 fn an_evaluator_that_is_off_by_little_is_seen() {
-    let [largest, median] = measure(some(), 8, library).unwrap().largest_and_median(0);
+    let [largest, median] = measure(some(), 8, library).unwrap().largest_and_median();
     assert!(largest < 12.0 && median < 3.0, "{largest} {median}");
     let turned = |motion: &FreeMotion, times: &[f64]| {
         let turn = Quat::new(1.0, Vec3([8.0 * UNIT, 0.0, 0.0]));
         let off = |(q, omega): Found| (q * turn, omega);
         library(motion, times).map(|found| found.into_iter().map(off).collect())
     };
-    let [largest, median] = measure(some(), 8, turned).unwrap().largest_and_median(0);
+    let [largest, median] = measure(some(), 8, turned).unwrap().largest_and_median();
     assert!(largest > 17.0 && (median - 16.0).abs() < 1.0, "{largest} {median}");
 }
 
