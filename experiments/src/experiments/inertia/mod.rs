@@ -8,7 +8,7 @@ mod shapes;
 use std::time::Instant;
 
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use polhode::inertia::{Amount, MassProperties, Mesh, MeshError, Solid, integrate_mass};
+use polhode::inertia::{Amount, MassProperties, Mesh, Solid, integrate_mass};
 use polhode::num::Random;
 use polhode_files::error::Error;
 use polhode_pages::figure::{Curve, Figure};
@@ -220,7 +220,7 @@ fn error(found: &MassProperties, expected: &MassProperties) -> f64 {
 }
 
 fn mesh(triangles: impl Iterator<Item = [Vector3<f64>; 3]>) -> Result<Mesh, Error> {
-    Mesh::new(triangles).map_err(|error: MeshError| failed(&error))
+    Mesh::new(triangles).map_err(|error| failed(&error))
 }
 
 /// Time to read a binary STL from memory.
