@@ -44,9 +44,8 @@ fn errors(entry: &Entry, ensemble: &Ensemble) -> Result<Run, Error> {
     let step = step(entry, ensemble);
     let judge = |truth: &Truth| truth.judge(entry.method.as_ref(), step, care).map(Some).map_err(unexpected);
     let judged = ensemble.truths.iter().map(judge).collect::<Result<Vec<Option<Judged>>, Error>>()?;
-    let evaluations = judged.iter().zip(&ensemble.truths).map(|(judged, truth)| {
-        judged.as_ref().map_or(f64::INFINITY, |one| entry.per_unit(truth.body().problem(), 1.0, one))
-    });
+    let evaluations = judged.iter().flatten().zip(&ensemble.truths);
+    let evaluations = evaluations.map(|(one, truth)| entry.per_unit(truth.body().problem(), 1.0, one));
     Ok(Run {
         evaluations: evaluations.collect(),
         time: Vec::new(),
