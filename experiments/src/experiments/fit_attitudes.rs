@@ -9,7 +9,7 @@ use polhode_files::error::{Error, unexpected};
 use polhode_fit::{FitError, Poses, Record, Settings, fit, fit_poses, foreseen_attitude_bound};
 use polhode_pages::table::{Column, Table, row};
 
-use super::tensors::{entries, random_tensor, square};
+use super::tensors::{ELLIPSOID, entries, random_tensor, square};
 use crate::experiment::{Context, Report};
 use crate::statistics::{Interval, rounded};
 
@@ -24,8 +24,6 @@ const BODIES: [(&str, [f64; 3]); 4] = [
     ("planar", [1.0, 2.0, 3.0]),
     ("slender", [1.0, 3.0, 3.3]),
 ];
-/// The 95 % point of χ² with five degrees of freedom.
-const ELLIPSOID: f64 = 11.070_497_693_516_35;
 /// Deviation of a number of the tensor, over the trace, from which on a record counts as not determining it.
 const VAGUE: f64 = 0.1;
 

@@ -8,12 +8,21 @@ pub(super) fn random_rotation(random: &mut Random) -> Rotation3<f64> {
     UnitQuaternion::from_quaternion(Quaternion::new(w, v.x, v.y, v.z)).to_rotation_matrix()
 }
 
+/// With these moments about axes that `turn` has turned.
+pub(super) fn tensor_along(turn: &Rotation3<f64>, moments: Vector3<f64>) -> Matrix3<f64> {
+    let j = turn.matrix() * Matrix3::from_diagonal(&moments) * turn.matrix().transpose();
+    (j + j.transpose()) / 2.0
+}
+
 /// With the trace 1, and moments in these ratios.
 pub(super) fn random_tensor(moments: [f64; 3], random: &mut Random) -> Matrix3<f64> {
     let turn = random_rotation(random);
     let j = turn.matrix() * Matrix3::from_diagonal(&Vector3::from(moments)) * turn.matrix().transpose();
     (j + j.transpose()) / (2.0 * j.trace())
 }
+
+/// The 95 % point of χ² with five degrees of freedom.
+pub(super) const ELLIPSOID: f64 = 11.070_497_693_516_35;
 
 /// xx, yy, zz, xy, xz, yz.
 pub(super) type Entries = SMatrix<f64, 6, 1>;

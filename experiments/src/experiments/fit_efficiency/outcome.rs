@@ -1,10 +1,8 @@
 //! What the answers of one estimator to many records amount to.
 
+use crate::experiments::tensors::ELLIPSOID;
 use crate::statistics::rounded;
 use polhode_pages::table::{Cell, row, to_digits};
-
-/// The 95 % point of χ² with five degrees of freedom.
-const ELLIPSOID: f64 = 11.070_497_693_516_35;
 
 /// The squared error of one answer, eᵀ C⁻¹ e.
 #[derive(Clone, Copy)]

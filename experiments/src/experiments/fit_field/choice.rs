@@ -6,7 +6,7 @@
 //! beside that. Chance is that of the binomial distribution; Wilson's interval, which was taken at first, refutes two of 64, which
 //! happens once in 500 times.
 
-use nalgebra::Matrix3;
+use nalgebra::Vector3;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_files::error::{Error, unexpected};
@@ -15,7 +15,7 @@ use polhode_pages::table::{Column, Table, row};
 
 use super::tally::ELLIPSOIDS;
 use crate::experiment::Context;
-use crate::experiments::tensors::{entries, random_rotation, square};
+use crate::experiments::tensors::{entries, random_rotation, square, tensor_along};
 use crate::statistics::{Interval, chance_of, rounded};
 
 const SEED: u64 = 402_026;
@@ -48,9 +48,8 @@ fn trial(acting: Acting, stream: u64) -> Result<Option<Answer>, Error> {
     let mut random = Random::new(SEED).stream(stream);
     let turn = random_rotation(&mut random);
     let trace: f64 = MOMENTS.iter().sum();
-    let moments = Matrix3::from_diagonal(&(nalgebra::Vector3::from(MOMENTS) / trace));
-    let j = turn.matrix() * moments * turn.matrix().transpose();
-    let body = Inertia::from_tensor((j + j.transpose()) / 2.0).map_err(unexpected)?;
+    let j = tensor_along(&turn, Vector3::from(MOMENTS) / trace);
+    let body = Inertia::from_tensor(j).map_err(unexpected)?;
     let omega = random.normal_vector().normalize();
     let direction = random.normal_vector().normalize();
     let disturbances = match acting.model {

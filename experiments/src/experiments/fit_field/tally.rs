@@ -2,11 +2,12 @@
 
 use super::cases::{Case, Model};
 use super::trial::{Trial, Verdict};
+use crate::experiments::tensors::ELLIPSOID;
 use crate::statistics::Interval;
 
 /// The 95 % points of χ² with five and six degrees of freedom, and the 99.9 % points.
 pub(super) const ELLIPSOIDS: [(f64, f64); 2] =
-    [(11.070_497_693_516_35, 20.515_005_652_432_87), (12.591_587_243_743_98, 22.457_744_484_825_326)];
+    [(ELLIPSOID, 20.515_005_652_432_87), (12.591_587_243_743_98, 22.457_744_484_825_326)];
 
 /// Counts of one row or several.
 #[derive(Default)]

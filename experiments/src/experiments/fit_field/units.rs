@@ -10,7 +10,7 @@
 //!
 //! Rates alone are scaled: a fit knows only the product of rate and time.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode::units::RateUnit;
@@ -21,7 +21,7 @@ use polhode_fit::{
 use polhode_pages::table::{Column, Table, row};
 
 use crate::experiment::Context;
-use crate::experiments::tensors::random_rotation;
+use crate::experiments::tensors::{random_rotation, tensor_along};
 
 const SEED: u64 = 350_035;
 /// Torque noise over a third of the trace, rad/s² √s: that of tosses in air is 1e-2 to 6e-2.
@@ -43,9 +43,8 @@ fn toss(level: usize, k: u64) -> Result<Toss, Error> {
     let second = Vector3::from_fn(|_, _| 0.02 + random.uniform());
     let moments =
         Vector3::new(second.y + second.z, second.x + second.z, second.x + second.y) / (2.0 * second.sum());
-    let turn = random_rotation(&mut random);
-    let j = turn.matrix() * Matrix3::from_diagonal(&moments) * turn.matrix().transpose();
-    let body = Inertia::from_tensor((j + j.transpose()) / 2.0).map_err(unexpected)?;
+    let j = tensor_along(&random_rotation(&mut random), moments);
+    let body = Inertia::from_tensor(j).map_err(unexpected)?;
     let samples = [100, 200, 300][(k % 3) as usize];
     let times: Vec<f64> = (0..=samples).map(|i| f64::from(i) / 100.0).collect();
     let drag = if k.is_multiple_of(2) { 0.0 } else { 1e-2 };

@@ -17,7 +17,7 @@ use polhode_pages::table::{Column, Table, row};
 
 use super::fit_field::tally::Tally;
 use super::fit_field::trial::{Answer, Trial, Verdict, lines_cover};
-use super::tensors::{entries, random_rotation, square};
+use super::tensors::{entries, random_rotation, square, tensor_along};
 use crate::experiment::{Context, Report};
 use crate::statistics::{Interval, rounded};
 use cases::{CASES, Case, Model, Sampling, Start};
@@ -28,9 +28,7 @@ const SEED: u64 = 404_026;
 fn tensor(moments: [f64; 3], random: &mut Random) -> (Matrix3<f64>, Matrix3<f64>) {
     let turn = random_rotation(random);
     let trace: f64 = moments.iter().sum();
-    let j =
-        turn.matrix() * Matrix3::from_diagonal(&(Vector3::from(moments) / trace)) * turn.matrix().transpose();
-    ((j + j.transpose()) * 0.5, *turn.matrix())
+    (tensor_along(&turn, Vector3::from(moments) / trace), *turn.matrix())
 }
 
 /// True times, and those that the record has.
