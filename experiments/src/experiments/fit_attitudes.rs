@@ -7,7 +7,7 @@ use polhode::num::Random;
 use polhode::rotation::{Quat, Vec3};
 use polhode_files::error::{Error, unexpected};
 use polhode_fit::{FitError, Poses, Record, Settings, fit, fit_poses, foreseen_attitude_bound};
-use polhode_pages::table::{Column, Table, row};
+use polhode_pages::table::{Cell, Column, Table, row};
 
 use super::tensors::{ELLIPSOID, entries, random_tensor, square};
 use crate::experiment::{Context, Report};
@@ -77,7 +77,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     let (mut pooled, mut pooled_differenced, mut failures) =
         (Summary::default(), Summary::default(), Vec::new());
     // records, and those that were refused wrongly
-    let mut all = (0, 0);
+    let mut all = [0, 0];
     let mut leasts = 0.0;
     for (&(body, noise, rate), cell) in cells.iter().zip(results.chunks(trials as usize)) {
         let name = format!("{}, {} deg, {} Hz", BODIES[body].0, NOISES[noise], rates[rate]);
@@ -91,25 +91,8 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         let differenced = Summary::of(cell.iter().map(|trial| trial.differenced));
         // told apart by the bound of the true motion, of which the estimate has its own
         let wrongly = cell.iter().filter(|trial| trial.own.is_none() && !trial.is_vague).count() as u64;
-        let coverage = Interval::new(own.covered, own.answered);
-        table.push(row![
-            BODIES[body].0,
-            NOISES[noise],
-            rates[rate] as u64,
-            own.over_bound(),
-            own.interval().map(|(low, _)| rounded(low)),
-            own.interval().map(|(_, high)| rounded(high)),
-            coverage.map(|c| rounded(c.share)),
-            coverage.map(|c| rounded(c.low)),
-            coverage.map(|c| rounded(c.high)),
-            made - own.answered,
-            wrongly,
-            differenced.over_bound(),
-            Interval::new(differenced.covered, differenced.answered).map(|c| rounded(c.share)),
-            made - differenced.answered,
-            made,
-            seconds as u64,
-        ]);
+        let of = (BODIES[body].0, Some(NOISES[noise]), Some(rates[rate] as u64));
+        table.push(cells_of(of, [&own, &differenced], [made, wrongly], seconds));
         if trials >= TELLING {
             failures.extend(
                 own.failures(squared_least(BODIES[body].1).sqrt())
@@ -124,38 +107,16 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         leasts += made as f64 * squared_least(BODIES[body].1);
         pooled.add(&own);
         pooled_differenced.add(&differenced);
-        all.0 += made;
-        all.1 += wrongly;
+        all[0] += made;
+        all[1] += wrongly;
     }
-    let coverage = Interval::new(pooled.covered, pooled.answered);
-    table.push(row![
-        "all",
-        None::<f64>,
-        None::<f64>,
-        pooled.over_bound(),
-        pooled.interval().map(|(low, _)| rounded(low)),
-        pooled.interval().map(|(_, high)| rounded(high)),
-        coverage.map(|c| rounded(c.share)),
-        coverage.map(|c| rounded(c.low)),
-        coverage.map(|c| rounded(c.high)),
-        all.0 - pooled.answered,
-        all.1,
-        pooled_differenced.over_bound(),
-        Interval::new(pooled_differenced.covered, pooled_differenced.answered).map(|c| rounded(c.share)),
-        all.0 - pooled_differenced.answered,
-        all.0,
-        seconds as u64,
-    ]);
-    let conclusion = match (
-        pooled.over_bound(),
-        pooled.interval(),
-        Interval::new(pooled.covered, pooled.answered),
-    ) {
+    table.push(cells_of(("all", None, None), [&pooled, &pooled_differenced], all, seconds));
+    let conclusion = match (pooled.over_bound(), pooled.interval(), pooled.coverage()) {
         (Some(over), Some((low, high)), Some(c)) => {
             let is_told = high - low < 0.1;
             failures.extend(
                 pooled
-                    .failures((leasts / all.0 as f64).sqrt())
+                    .failures((leasts / all[0] as f64).sqrt())
                     .filter(|_| is_told)
                     .map(|failure| format!("pooled: {failure}")),
             );
@@ -171,6 +132,35 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     };
     let checks = cells.len() as u64 * if trials >= TELLING { 3 } else { 1 } + 2;
     Ok(Report { conclusion, checks, tables: vec![table], seed: Some(SEED), failures, ..Report::default() })
+}
+
+/// The cells of a row: its body, noise and rate, its answers and those by differences, and how many records were made and how many of them
+/// refused wrongly.
+fn cells_of(
+    (body, noise, rate): (&str, Option<f64>, Option<u64>),
+    [own, differenced]: [&Summary; 2],
+    [made, wrongly]: [u64; 2],
+    seconds: usize,
+) -> [Cell; 16] {
+    let coverage = own.coverage();
+    row![
+        body,
+        noise,
+        rate,
+        own.over_bound(),
+        own.interval().map(|(low, _)| rounded(low)),
+        own.interval().map(|(_, high)| rounded(high)),
+        coverage.map(|c| rounded(c.share)),
+        coverage.map(|c| rounded(c.low)),
+        coverage.map(|c| rounded(c.high)),
+        made - own.answered,
+        wrongly,
+        differenced.over_bound(),
+        differenced.coverage().map(|c| rounded(c.share)),
+        made - differenced.answered,
+        made,
+        seconds as u64,
+    ]
 }
 
 /// Records a row that noise alone lets look like those of a torque: one in a few hundred.
@@ -209,9 +199,14 @@ impl Summary {
         let over = self.over_bound().zip(self.interval());
         let over = over.filter(|(_, (low, high))| *high < 0.95 * least || *low > 1.05 * least);
         let over = over.map(|(over, (low, high))| format!("{over} of the bound ({low:.3} to {high:.3})"));
-        let covered = Interval::new(self.covered, self.answered).filter(|c| c.high < 0.93 || c.low > 0.97);
+        let covered = self.coverage().filter(|c| c.high < 0.93 || c.low > 0.97);
         let covered = covered.map(|c| format!("{:.3} of the ellipsoids hold the truth", c.share));
         over.into_iter().chain(covered)
+    }
+
+    /// Share of the answers whose ellipsoid holds the truth.
+    fn coverage(&self) -> Option<Interval> {
+        Interval::new(self.covered, self.answered)
     }
 
     /// Root of the mean of e C⁻¹ e / 5.
