@@ -9,15 +9,13 @@ use polhode_pages::table::{Column, Table, row, to_digits};
 use serde::Deserialize;
 
 use super::super::contestants::knows_the_motion;
+use super::contest::CLOSED_FORM;
 
 /// Accuracies of the table, rad.
 const ACCURACIES: [f64; 3] = [1e-4, 1e-8, 1e-12];
 
 /// The table has, of each kind, the longest horizon up to this one, units of time, and the longest beyond it.
 const LONG: f64 = 1e4;
-
-/// Free motion is exact at any step of this one and its cost is the same at every accuracy: it stands beside the others in each row.
-const CLOSED_FORM: &str = "exact-step";
 
 /// A row of `costs.csv`.
 #[derive(Clone, Debug, Deserialize)]
