@@ -49,16 +49,15 @@ pub fn table() -> Table {
 pub fn listed() -> Table {
     let mut table = table();
     let euler = LinearlyImplicitEuler;
-    if let Some(claims) = euler.claims(Problem::Free) {
-        let (order, cost) = (claims.order, claims.cost.to_string());
-        table.push(cells(euler.name(), order, &claims, cost, claims.source));
-    }
     // its claims are those of any loss
     let method = |parts: Dissipating| Splitting::of_flows(parts, schemes::STRANG).ok();
     let friction = Dissipating::new(1e-3).ok().and_then(method);
-    if let Some(claims) = friction.and_then(|friction| friction.claims(Problem::Free)) {
-        let (order, cost) = (claims.order, claims.cost.to_string());
-        table.push(cells("dissipating:LOSS".into(), order, &claims, cost, claims.source));
+    for (name, claims) in [
+        (euler.name(), euler.claims(Problem::Free)),
+        ("dissipating:LOSS".into(), friction.and_then(|friction| friction.claims(Problem::Free))),
+    ] {
+        let Some(claims) = claims else { continue };
+        table.push(cells(name, claims.order, &claims, claims.cost.to_string(), claims.source));
     }
     table
 }

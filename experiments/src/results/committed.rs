@@ -93,11 +93,10 @@ impl Results {
 
     /// The table or view of that name, to be rounded.
     pub(super) fn table(&self, name: &str) -> Result<Table, Error> {
-        if self.origin.experiment == COSTED && name == WHICH {
-            return Ok(self.which()?.table());
-        }
-        if self.origin.experiment == COSTED && name == SPANS {
-            return Ok(self.which()?.spans());
+        match (self.origin.experiment.as_str(), name) {
+            (COSTED, WHICH) => return Ok(self.which()?.table()),
+            (COSTED, SPANS) => return Ok(self.which()?.spans()),
+            _ => {}
         }
         let part = self.origin.views.get(name);
         let whole = part.map_or(name, |part| &part.table);

@@ -51,8 +51,7 @@ pub(super) fn turning() -> Result<Turning, Error> {
 }
 
 fn from_momentum(inertia: &Inertia, momentum: Vector3<f64>) -> Result<FreeMotion, Error> {
-    let [x, y, z] = inertia.principal_moments();
-    let omega = momentum.component_div(&Vector3::new(x, y, z));
+    let omega = momentum.component_div(&Vector3::from(inertia.principal_moments()));
     FreeMotion::from_omega(inertia, UnitQuaternion::identity(), omega).map_err(unexpected)
 }
 
