@@ -3,12 +3,13 @@
 use clap::ValueEnum;
 use polhode::flow::{Mode, TumblingElements, TumblingPopulation, TumblingSolution};
 use polhode::inertia::Inertia;
-use polhode::num::{Covariance, DistributionError};
+use polhode::num::Covariance;
 use polhode_files::error::Error;
 use polhode_files::toml_file::Section;
 use toml::de::DeValue;
 
 use super::nominal::Units;
+use super::spread::matrix_of;
 use crate::flags::tumbling::{ModeArgument, Periods, latitude, periods};
 
 /// Keys of `[start]` and of a solution.
@@ -123,15 +124,9 @@ impl Spread {
                 return Err(spread.at(key, "its spread is given twice; leave one of them out"));
             }
             let matrix = table.rows::<8, 8>("elements")?;
-            let mut matrix = matrix.ok_or_else(|| spread.at("covariance", "elements missing in it"))?;
+            let matrix = matrix.ok_or_else(|| spread.at("covariance", "elements missing in it"))?;
             let unit = |k: usize| if (2..6).contains(&k) { units.angle } else { 1.0 };
-            for (j, row) in matrix.iter_mut().enumerate() {
-                row.iter_mut().enumerate().for_each(|(k, entry)| *entry *= unit(j) * unit(k));
-            }
-            let covariance = Covariance::new(matrix).map_err(|error: DistributionError| {
-                table.at("elements", &format!("the covariance {error}"))
-            })?;
-            found.covariance = Some(covariance);
+            found.covariance = Some(matrix_of(&table, "elements", unit, matrix)?);
         }
         Ok(found)
     }

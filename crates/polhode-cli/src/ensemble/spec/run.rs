@@ -82,8 +82,7 @@ impl Plan {
             if let Some(inertia) = &nominal.inertia {
                 let omega = nominal.omega.unwrap_or_else(Vec3::zero);
                 let body = nominal.acting.of_start(inertia.clone(), start, omega).map_err(unexpected)?;
-                let refused = |error: &dyn std::fmt::Display| run.at("method", &error.to_string());
-                found.prepare_f64(clock, &body).map_err(|error| refused(&error))?;
+                found.prepare_f64(clock, &body).map_err(|error| run.at("method", &error.to_string()))?;
             }
             let count = |t: &f64| {
                 let steps =
@@ -103,9 +102,9 @@ impl Plan {
             let name = if tolerance.is_some() { found.name() } else { name.into() };
             Motion::Stepped { name, method: found.into(), clock, steps }
         };
-        let errors = match run.value("errors").map(toml::Spanned::get_ref) {
+        let errors = match run.value("errors").map(Spanned::get_ref) {
             None => true,
-            Some(toml::de::DeValue::Boolean(errors)) => *errors,
+            Some(DeValue::Boolean(errors)) => *errors,
             Some(other) => {
                 return Err(run.at("errors", &format!("{} given, true or false needed", other.type_str())));
             }

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use polhode::body::{AttitudeSpread, Population, Tensors};
-use polhode::num::{Covariance, Distribution, DistributionError};
+use polhode::inertia::Inertia;
+use polhode::num::{Covariance, Distribution};
 use polhode_files::error::Error;
 use polhode_files::toml_file::Section;
 use toml::Spanned;
@@ -173,7 +174,7 @@ impl Sources<'_> {
         Ok(turn.map_or(AttitudeSpread::Fixed(mean), |turn| AttitudeSpread::Near { mean, turn }))
     }
 
-    fn inertia(&self, nominal: &Nominal, inertia: polhode::inertia::Inertia) -> Result<Tensors, Error> {
+    fn inertia(&self, nominal: &Nominal, inertia: Inertia) -> Result<Tensors, Error> {
         self.once(["moments", "inertia", "moments"])?;
         if let Some(list) = self.spread.list("moments")? {
             let relative = match list[..] {
@@ -204,7 +205,7 @@ impl Sources<'_> {
 }
 
 /// The covariance of numbers that are typed in the units `unit`.
-fn matrix_of<const N: usize>(
+pub(super) fn matrix_of<const N: usize>(
     table: &Section<'_>,
     key: &str,
     unit: impl Fn(usize) -> f64,
@@ -215,6 +216,5 @@ fn matrix_of<const N: usize>(
             *entry *= unit(j) * unit(k);
         }
     }
-    Covariance::new(matrix)
-        .map_err(|error: DistributionError| table.at(key, &format!("the covariance {error}")))
+    Covariance::new(matrix).map_err(|error| table.at(key, &format!("the covariance {error}")))
 }
