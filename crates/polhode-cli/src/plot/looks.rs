@@ -154,10 +154,7 @@ impl Looks {
 
     /// The direction of the weight moment in body axes; `None` without gravity.
     pub(crate) fn weight(&self) -> Option<Vector3<f64>> {
-        let weight = self.body.linear_potential::<f64>()?.moment;
-        // a momentum goes the same way out of the solver frame
-        let moment = self.body.leave(&Point::new(Quat::identity(), weight)).momentum();
-        Some(moment.normalize())
+        Some(weight_moment(&self.body)?.normalize())
     }
 
     /// The largest turn between two looks, rad.
@@ -331,6 +328,13 @@ impl Looks {
     pub(crate) fn keeps_momentum(&self) -> bool {
         self.body.conserved().contains(&Conserved::Momentum)
     }
+}
+
+/// Along the weight moment in body axes; `None` without gravity.
+pub(crate) fn weight_moment(body: &Body) -> Option<Vector3<f64>> {
+    let weight = body.linear_potential::<f64>()?.moment;
+    // a momentum goes the same way out of the solver frame
+    Some(body.leave(&Point::new(Quat::identity(), weight)).momentum())
 }
 
 /// The number of steps to the end.

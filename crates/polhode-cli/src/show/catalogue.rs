@@ -1,10 +1,8 @@
 //! What the bodies of the catalogue look like. Sizes are those of their summaries, m, where they have some.
 
 use nalgebra::Vector3;
-use polhode::body::{Body, Point};
 use polhode::catalogue;
 use polhode::inertia::Solid;
-use polhode::rotation::Quat;
 use polhode_pages::scene::{Shape, Tint};
 
 use super::look::from_z;
@@ -32,12 +30,6 @@ pub(super) fn look(name: &str) -> Option<(Shape, String)> {
         }
         _ => return None,
     })
-}
-
-/// The direction of the weight moment in body axes.
-pub(super) fn weight(body: &Body) -> Option<V> {
-    let weight = body.linear_potential::<f64>()?.moment;
-    Some(body.leave(&Point::new(Quat::identity(), weight)).momentum())
 }
 
 /// A cone that stands on its tip, which is the origin, with its base in a direction.

@@ -13,6 +13,7 @@ use polhode_pages::scene::{MOST_TRIANGLES, Shape};
 
 use super::catalogue;
 use crate::flags::body::BodyArguments;
+use crate::plot::looks::weight_moment;
 
 /// A mesh has at most so many triangles: more is a mistake, or a scan that no page needs.
 const MOST: usize = 3_000_000;
@@ -90,7 +91,7 @@ fn assembled(form: &Form, name: &str) -> Result<Shape, Error> {
 
 /// A body of which only the inertia is known.
 fn of_inertia(body: &Body, why: &str) -> Drawn {
-    if let (true, Some(weight)) = (is_heavy(body), catalogue::weight(body)) {
+    if let (true, Some(weight)) = (is_heavy(body), weight_moment(body)) {
         return Drawn {
             shape: catalogue::cone(weight),
             words: format!(

@@ -167,7 +167,7 @@ impl Show {
             looks.turn(),
             looks.times.len()
         );
-        let span = span::rounded(0.7 * course.span() * RESOLVED / looks.turn());
+        let span = span::two_digits(0.7 * course.span() * RESOLVED / looks.turn());
         let earlier = format!("--until {}", course.start_time + span);
         Err(Error::input(
             "--until",
@@ -220,7 +220,7 @@ impl Show {
                 "{} attitudes of the body, {}; between two of them the page turns it evenly, at most about {} rad off the motion.",
                 scene.body.times.len(),
                 course.method,
-                rounded(two_digits(scene.body.interpolation_error()))
+                rounded(span::two_digits(scene.body.interpolation_error()))
             ));
         }
         Ok(scene)
@@ -240,10 +240,6 @@ fn turns(track: &Track) -> bool {
 fn sentence(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or(String::new(), |first| format!("{}{}.", first.to_uppercase(), letters.as_str()))
-}
-
-fn two_digits(x: f64) -> f64 {
-    format!("{x:.1e}").parse().unwrap_or(x)
 }
 
 /// Whether the energy of a body is conserved, so that its change is an error.

@@ -32,18 +32,17 @@ pub(super) fn span(body: &Body, start: &Point<Dd>) -> Result<f64, Error> {
     let turn = core::f64::consts::TAU / rate;
     if let Ok(motion) = GyrostatMotion::from_point(body, *start) {
         let period = motion.character().period.unwrap_or(turn);
-        return Ok(rounded((ROUNDS * period).max(TURNS[0] * turn)));
+        return Ok(two_digits((ROUNDS * period).max(TURNS[0] * turn)));
     }
     let [least, most] = TURNS.map(|turns| turns * turn);
     if !is_free {
-        return Ok(rounded(TURNS_OF_A_TOP * turn));
+        return Ok(two_digits(TURNS_OF_A_TOP * turn));
     }
     let motion = FreeMotion::from_point(body.inertia(), *start);
     let period = motion.character().ok().and_then(|found| found.polhode_period).unwrap_or(0.0);
-    Ok(rounded((ROUNDS * period).clamp(least, most)))
+    Ok(two_digits((ROUNDS * period).clamp(least, most)))
 }
 
-/// To two digits.
-pub(super) fn rounded(x: f64) -> f64 {
+pub(super) fn two_digits(x: f64) -> f64 {
     format!("{x:.1e}").parse().unwrap_or(x)
 }
