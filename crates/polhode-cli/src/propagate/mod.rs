@@ -295,7 +295,7 @@ impl Propagate {
             for t in times.iter()? {
                 let t = t?;
                 self.check_time(clock, chosen, &mut before, t)?;
-                let sample = self.sample(&mut run, t)?;
+                let sample = run.at(t).map_err(|error| self.ended(error))?;
                 let error = exact.as_ref().map(|exact| {
                     let there = exact.point_at_dd(sample.elapsed);
                     rotation_angle(sample.point.to_dd().attitude, there.attitude).hi()
@@ -313,10 +313,6 @@ impl Propagate {
             }
             Ok(())
         })
-    }
-
-    fn sample(&self, run: &mut Run, t: f64) -> Result<Sample, Error> {
-        run.at(t).map_err(|error| self.ended(error))
     }
 
     /// Why a run cannot go on.
