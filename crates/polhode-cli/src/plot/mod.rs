@@ -88,10 +88,6 @@ enum BodyAxis {
     Z,
 }
 
-fn angle(text: &str) -> Result<[f64; 2], String> {
-    numbers::<2>(text)
-}
-
 /// Pictures of a motion: polhode, herpolhode, angular velocity, angles, trace, Poinsot's construction, conserved quantities
 ///
 /// The ending of FILE names the format: .svg, .png, or .html for the animation of poinsot, a page that needs no network. The curves
@@ -124,7 +120,7 @@ pub(crate) struct Plot {
     #[arg(long, value_enum, value_name = "AXIS", help_heading = "Picture")]
     axis: Option<BodyAxis>,
     /// Direction from which spheres are seen: azimuth and elevation, deg [default: one that shows the path]
-    #[arg(long, value_name = "AZ,EL", value_parser = angle, allow_hyphen_values = true, help_heading = "Picture")]
+    #[arg(long, value_name = "AZ,EL", value_parser = numbers::<2>, allow_hyphen_values = true, help_heading = "Picture")]
     view: Option<[f64; 2]>,
     /// Size: column (500x400), wide (860x400), slide (960x540) or WIDTHxHEIGHT, in pixels. Long titles, several panels and equal scales make a picture higher. A PNG has twice as many pixels in each direction [default: column]
     #[arg(long, value_name = "SIZE", value_parser = size, help_heading = "Picture")]

@@ -27,9 +27,8 @@ pub(super) fn omega(plot: &Plot, looks: &Looks) -> Canvas {
     let mut figure = panel("angular velocity in body axes (rad/s)", Scale::Linear, plot.size());
     let mut title = plot.title("Angular velocity", looks);
     title += &looks.remark();
-    for (axis, name) in ["ω₁", "ω₂", "ω₃"].into_iter().enumerate() {
-        let name = name.replace(['₁', '₂', '₃'], ["x", "y", "z"][axis]);
-        figure.series.push(looks.curve(&name, looks.omegas.iter().map(|omega| Some(omega[axis]))));
+    for (axis, name) in ["ωx", "ωy", "ωz"].into_iter().enumerate() {
+        figure.series.push(looks.curve(name, looks.omegas.iter().map(|omega| Some(omega[axis]))));
     }
     match &looks.flips {
         Some(flips) if !flips.can_be_told_apart() => {
