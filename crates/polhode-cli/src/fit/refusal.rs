@@ -6,24 +6,25 @@ use super::report::Facts;
 
 /// The reason, with the flags that help.
 pub(super) fn reason(error: &FitError) -> String {
-    match error {
-        FitError::NoFlight { .. } => format!("{error} (--window t0,t1)"),
-        FitError::Driven { .. } => format!("{error} (--window t0,t1)"),
-        FitError::Units { .. } => format!("{error} (--rate-unit, --time-unit; --trust-units)"),
-        FitError::Poses(PoseFault::Direction { .. } | PoseFault::Inverted { .. }) => {
-            format!("{error} (--attitude body-to-space or space-to-body)")
+    let flags = match error {
+        FitError::NoFlight { .. } | FitError::Driven { .. } | FitError::Poses(PoseFault::NotFree { .. }) => {
+            "--window t0,t1"
         }
-        FitError::Poses(PoseFault::NotFree { .. }) => format!("{error} (--window t0,t1)"),
-        FitError::SameAxes { .. } => format!("{error} (--columns)"),
-        FitError::Poses(PoseFault::FarApart { .. }) => format!("{error} (--attitude-noise)"),
-        FitError::UntoldSensor => format!(
-            "{error} (smaller --gyro-bias, --gyro-scale, --gyro-axis-scales, --gyro-misalignment or --gyro-skew)"
-        ),
-        FitError::StatedNoise { .. } => format!("{error} (--noise)"),
-        FitError::SizeDiffers { .. } => format!("{error} (--window t0,t1; --trace, --moment)"),
-        FitError::Undersampled { .. } => format!("{error} (--rate-unit, --time-unit)"),
-        _ => error.to_string(),
-    }
+        FitError::Units { .. } => "--rate-unit, --time-unit; --trust-units",
+        FitError::Poses(PoseFault::Direction { .. } | PoseFault::Inverted { .. }) => {
+            "--attitude body-to-space or space-to-body"
+        }
+        FitError::SameAxes { .. } => "--columns",
+        FitError::Poses(PoseFault::FarApart { .. }) => "--attitude-noise",
+        FitError::UntoldSensor => {
+            "smaller --gyro-bias, --gyro-scale, --gyro-axis-scales, --gyro-misalignment or --gyro-skew"
+        }
+        FitError::StatedNoise { .. } => "--noise",
+        FitError::SizeDiffers { .. } => "--window t0,t1; --trace, --moment",
+        FitError::Undersampled { .. } => "--rate-unit, --time-unit",
+        _ => return error.to_string(),
+    };
+    format!("{error} ({flags})")
 }
 
 /// What it tells of the record, and whether the fit failed rather than its input.
@@ -32,9 +33,8 @@ pub(super) fn facts(error: &FitError) -> (Option<Facts>, bool) {
         FitError::Unidentifiable(what) => (Some(Facts::unidentified(what)), true),
         FitError::Unsettled { axes, .. } => (Some(Facts::unsettled(axes)), true),
         FitError::NoFlight { .. } => (Some(Facts::not_free()), true),
-        FitError::Driven { .. } => (Some(Facts::driven()), true),
+        FitError::Driven { .. } | FitError::Poses(PoseFault::NotFree { .. }) => (Some(Facts::driven()), true),
         FitError::Poses(PoseFault::Direction { .. }) => (Some(Facts::direction_open()), true),
-        FitError::Poses(PoseFault::NotFree { .. }) => (Some(Facts::driven()), true),
         FitError::Poses(PoseFault::Unsettled) => (Some(Facts::several()), true),
         FitError::Untold { names, rank } => (Some(Facts::untold(names, *rank)), true),
         FitError::UntoldSensor => (Some(Facts::untold_sensor()), true),

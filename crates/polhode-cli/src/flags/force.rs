@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use nalgebra::Vector3;
 use polhode::body::{Body, Force, ForceError, Orbit};
 use polhode_files::error::{Error, tell};
 use polhode_files::numbers::{list, numbers, positive};
@@ -156,17 +155,13 @@ impl Forces {
             };
             body = body.with(Force::gravity_gradient_on(turned.map_err(|error| ("orbit-plane", error))?));
         }
-        for (name, torque, make) in [
-            (
-                "torque-body",
-                self.torque_body,
-                Force::constant_torque_body as fn(Vector3<f64>) -> Result<Force, ForceError>,
-            ),
-            ("torque-space", self.torque_space, Force::constant_torque_space),
-        ] {
-            if let Some(torque) = torque {
-                body = body.with(make(torque.into()).map_err(|error| (name, error))?);
-            }
+        if let Some(torque) = self.torque_body {
+            let force = Force::constant_torque_body(torque.into());
+            body = body.with(force.map_err(|error| ("torque-body", error))?);
+        }
+        if let Some(torque) = self.torque_space {
+            let force = Force::constant_torque_space(torque.into());
+            body = body.with(force.map_err(|error| ("torque-space", error))?);
         }
         if let Some([linear, quadratic]) = self.drag {
             body = body.with(Force::drag(linear, quadratic).map_err(|error| ("drag", error))?);

@@ -251,13 +251,10 @@ fn of_models(e: &Estimate) -> Vec<Block> {
     }
     let cell = |cell: &String| minus(&cell.replace("+-", "±"));
     let rows = rows.iter().map(|row| row.iter().map(cell).collect()).collect();
-    let about = about_models(e);
-    let about = format!("{}:", capital(&about));
-    let heads = MODELS.map(String::from).to_vec();
     let mut blocks = vec![
         Block::Heading("Models of the torque".into()),
-        Block::Paragraph(about),
-        Block::Table(heads, rows),
+        Block::Paragraph(format!("{}:", capital(&about_models(e)))),
+        Block::Table(MODELS.map(String::from).to_vec(), rows),
     ];
     blocks.extend(about_gains(e).iter().map(|said| Block::Paragraph(format!("{}.", capital(said)))));
     let sizes = error_sizes(e);
