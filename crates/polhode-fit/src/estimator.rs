@@ -497,18 +497,8 @@ mod tests {
     /// explain the record better.
     #[test]
     fn what_stands_beside_the_noise_adds_its_squares() {
-        let weak = WeakEstimate {
-            radius: 1.0,
-            columns: vec![Column::new(Drag, None)],
-            at: Unknowns { x: Coordinates::repeat(0.25), c: vec![0.5] },
-            moved: 0.0,
-            root: Form::identity(),
-            stacked: None,
-            doubt: Form::zeros(),
-            squares: 0.0,
-            rows: 20,
-            parts: Vec::new(),
-        };
+        let at = Unknowns { x: Coordinates::repeat(0.25), c: vec![0.5] };
+        let weak = WeakEstimate::plain(vec![Column::new(Drag, None)], at, 20);
         assert_eq!(beside(&weak, &Form::zeros(), None, None).shape(), (6, 0));
         let reached = Some(Unknowns { x: Coordinates::repeat(0.375), c: vec![0.75] });
         let (what, origin) = ("an error of hx", Origin::Wheels);

@@ -187,16 +187,10 @@ mod tests {
         let (x, alignment) = (Coordinates::zeros(), Quat::identity());
         let track =
             Track { times: vec![-4.0, 3.0], attitudes: Vec::new(), rates: Vec::new(), used: vec![false; 2] };
-        let followed = Followed {
-            model: Model { x, alignment, is_aligned: false, drag: None, starts: Vec::new() },
-            is_still: true,
-            tracks: vec![track],
-            // of one component
-            levels: Levels { attitude: 0.0, rate: libm::exp(-likelihood) },
-            dof: [0.0, 1.0],
-            deviation: 1.0,
-            beyond: Vec::new(),
-        };
+        let model = Model { x, alignment, is_aligned: false, drag: None, starts: Vec::new() };
+        // of one component
+        let at = Followed::at(model, Levels { attitude: 0.0, rate: libm::exp(-likelihood) }, [0.0, 1.0]);
+        let followed = Followed { tracks: vec![track], deviation: 1.0, ..at };
         let alternatives = promised.map(|[drag, constant]| {
             let mut all = Alternatives::gaining([0.0, 0.0, drag, constant, 0.0]);
             all.constant.values = vec![0.0, torque, 0.0];

@@ -240,6 +240,14 @@ fn start(track: &Track, alignment: &Quat<f64>) -> Option<Start> {
 mod tests {
     use super::*;
 
+    impl Followed {
+        /// Where a search ended, of no samples.
+        pub(crate) fn at(model: Model, levels: Levels, dof: [f64; 2]) -> Self {
+            let (tracks, beyond) = (Vec::new(), Vec::new());
+            Self { model, is_still: true, tracks, levels, dof, deviation: 0.0, beyond }
+        }
+    }
+
     fn begin() -> Start {
         Start { attitude: Quat::identity(), rate: Vector3::new(0.5, 0.8, -0.4) }
     }

@@ -445,7 +445,7 @@ mod tests {
     use crate::columns::drag::Drag;
     use crate::columns::input::Input;
     use crate::columns::sets::sensor_columns;
-    use crate::physical::coordinates::{Coordinates, Form, coordinates, trace_free};
+    use crate::physical::coordinates::{Coordinates, coordinates, trace_free};
     use crate::settings::sensor::SensorPriors;
     use crate::signal::covariance::Levels;
     use crate::signal::stretch::KnownInputs;
@@ -480,18 +480,8 @@ mod tests {
         let columns: Vec<Column> =
             [Column::new(Input, None)].into_iter().chain(sensor_columns(&sensor, 1.0)).collect();
         let j = Matrix3::new(0.2, 0.01, -0.02, 0.01, 0.35, 0.03, -0.02, 0.03, 0.45);
-        WeakEstimate {
-            radius: 1.0,
-            columns,
-            at: Unknowns { x: coordinates(&j), c: vec![1.2, 0.01, -0.02, 0.03, 0.015] },
-            moved: 0.0,
-            root: Form::identity(),
-            stacked: None,
-            doubt: Form::zeros(),
-            squares: 0.0,
-            rows: 0,
-            parts: Vec::new(),
-        }
+        let at = Unknowns { x: coordinates(&j), c: vec![1.2, 0.01, -0.02, 0.03, 0.015] };
+        WeakEstimate::plain(columns, at, 0)
     }
 
     /// Readings for 16 s, of which the middle is at 9 s, that are those of a motion but for so much noise.

@@ -203,7 +203,7 @@ mod tests {
     use crate::columns::drag::Drag;
     use crate::columns::offset::Offset;
     use crate::columns::scale::Scale;
-    use crate::physical::coordinates::{Coordinates, Form, coordinates};
+    use crate::physical::coordinates::{Coordinates, coordinates};
     use crate::signal::covariance::Levels;
     use crate::signal::test_functions::TestFunctions;
     use crate::solve::linearised::Linearised;
@@ -246,18 +246,8 @@ mod tests {
         let linearised = Linearised::new(&stretch, &noise, &columns, at.clone(), tests);
         let (rows, left, levels) = (Vec::new(), Vec::new(), Levels::WHITE);
         let part = Part { stretch: 0, linearised, rows, left, levels, log_determinant: 0.0, noise };
-        let weak = WeakEstimate {
-            radius: 1.5,
-            columns,
-            at,
-            moved: 0.0,
-            root: Form::identity(),
-            stacked: None,
-            doubt: Form::zeros(),
-            squares: 0.0,
-            rows: equations,
-            parts: vec![part],
-        };
+        let plain = WeakEstimate::plain(columns, at, equations);
+        let weak = WeakEstimate { radius: 1.5, parts: vec![part], ..plain };
         let offsets = [0, 1, 2].map(|k| Column::new(Offset(k), None));
         let found = Equations::new(&[stretch], &weak, &offsets, &[scale], 0.25).unwrap();
         // one of drag, one with the square of the rate, and three each of viscous drag and of a constant torque

@@ -358,25 +358,10 @@ mod tests {
         let x = coordinates(&Matrix3::from_diagonal(&Vector3::new(0.4, 0.25, 0.35)));
         let (alignment, attitudes) = (Quat::identity(), vec![Quat::identity()]);
         let track = Track { times: vec![0.0], attitudes, rates: Vec::new(), used: vec![true] };
-        let followed = Followed {
-            model: Model { x, alignment, is_aligned: false, drag: None, starts: Vec::new() },
-            is_still: true,
-            tracks: vec![track],
-            levels: Levels { attitude: level, rate: 0.0 },
-            dof: [10.0, 0.0],
-            deviation: 0.0,
-            beyond: Vec::new(),
-        };
-        let read = Read {
-            unit: 2.0,
-            used: Vec::new(),
-            local_noise: Some(0.5),
-            rate_noise: None,
-            largest_turn: 0.75,
-            jumps: 0,
-            has_rates: false,
-        };
-        Free::of(followed, read)
+        let model = Model { x, alignment, is_aligned: false, drag: None, starts: Vec::new() };
+        let levels = Levels { attitude: level, rate: 0.0 };
+        let followed = Followed { tracks: vec![track], ..Followed::at(model, levels, [10.0, 0.0]) };
+        Free::of(followed, Read { local_noise: Some(0.5), largest_turn: 0.75, ..Read::nothing() })
     }
 
     /// Attitudes that were stated the wrong way round follow no free motion; the closed form finds that of the other direction, with its tensor, before

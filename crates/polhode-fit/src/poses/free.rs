@@ -331,6 +331,15 @@ mod tests {
     use crate::likelihood::track::Model;
     use nalgebra::UnitQuaternion;
 
+    impl Read {
+        /// Nothing, in units of 2 rad/s.
+        pub(crate) fn nothing() -> Self {
+            let (local_noise, rate_noise) = (None, None);
+            let (used, largest_turn, jumps, has_rates) = (Vec::new(), 0.0, 0, false);
+            Self { unit: 2.0, used, local_noise, rate_noise, largest_turn, jumps, has_rates }
+        }
+    }
+
     fn about_z(angle: f64) -> Quat<f64> {
         Quat::exponential(Vec3([0.0, 0.0, angle]))
     }
@@ -457,25 +466,10 @@ mod tests {
             let attitudes = if has_attitudes { vec![Quat::identity()] } else { Vec::new() };
             let track = Track { times: vec![0.0], attitudes, rates: vec![Vector3::x()], used: vec![true] };
             let (x, alignment) = (Coordinates::zeros(), Quat::identity());
-            let followed = Followed {
-                model: Model { x, alignment, is_aligned: false, drag: None, starts: Vec::new() },
-                is_still: true,
-                tracks: vec![track],
-                levels: Levels { attitude: level, rate: 0.5 * level },
-                dof: [4.0, 6.0],
-                deviation: 0.0,
-                beyond: Vec::new(),
-            };
-            let read = Read {
-                unit: 2.0,
-                used: Vec::new(),
-                local_noise,
-                rate_noise: None,
-                largest_turn: 0.0,
-                jumps: 0,
-                has_rates: true,
-            };
-            Free::of(followed, read)
+            let model = Model { x, alignment, is_aligned: false, drag: None, starts: Vec::new() };
+            let levels = Levels { attitude: level, rate: 0.5 * level };
+            let followed = Followed { tracks: vec![track], ..Followed::at(model, levels, [4.0, 6.0]) };
+            Free::of(followed, Read { local_noise, has_rates: true, ..Read::nothing() })
         };
         let (plain, given) = (Settings::default(), Settings::default().with_attitude_noise(0.5));
         assert_eq!(free(1.0, Some(0.25), true).misfit(&plain), Some(16.0));

@@ -113,15 +113,8 @@ mod tests {
     #[test]
     fn the_likelihood_is_that_of_the_readings() {
         let (x, alignment) = (Coordinates::zeros(), Quat::identity());
-        let followed = Followed {
-            model: Model { x, alignment, is_aligned: true, drag: None, starts: Vec::new() },
-            is_still: true,
-            tracks: Vec::new(),
-            levels: Levels { attitude: 0.5, rate: 0.25 },
-            dof: [10.0, 6.0],
-            deviation: 0.0,
-            beyond: Vec::new(),
-        };
+        let model = Model { x, alignment, is_aligned: true, drag: None, starts: Vec::new() };
+        let followed = Followed::at(model, Levels { attitude: 0.5, rate: 0.25 }, [10.0, 6.0]);
         let moved = Moved { followed, alternatives: None };
         let found = Found { moved, torque: Acting::Nothing, gain: None, without: None, models: Vec::new() };
         // −10 log 4 − 6 log 16 = −44 log 2
@@ -134,16 +127,10 @@ mod tests {
     /// A motion with so much log-likelihood, and what an offset of the rates would gain beside it.
     fn followed(likelihood: f64, gain: f64) -> Found {
         let (x, alignment) = (Coordinates::zeros(), Quat::identity());
-        let followed = Followed {
-            model: Model { x, alignment, is_aligned: true, drag: None, starts: Vec::new() },
-            is_still: true,
-            tracks: Vec::new(),
-            // of one component
-            levels: Levels { attitude: 0.5, rate: libm::exp(-likelihood) },
-            dof: [0.0, 1.0],
-            deviation: 0.0,
-            beyond: Vec::new(),
-        };
+        let model = Model { x, alignment, is_aligned: true, drag: None, starts: Vec::new() };
+        // of one component
+        let followed =
+            Followed::at(model, Levels { attitude: 0.5, rate: libm::exp(-likelihood) }, [0.0, 1.0]);
         let alternatives = Some(Alternatives::gaining([gain, 0.0, 0.0, 0.0, 0.0]));
         let moved = Moved { followed, alternatives };
         Found { moved, torque: Acting::Nothing, gain: None, without: None, models: Vec::new() }

@@ -86,15 +86,9 @@ mod tests {
     /// Axes that still turn by so much, of which a step finds a share: a gain of 10⁴ times the square.
     fn left(turn: Vector3<f64>, share: f64, is_of_rates: bool) -> Found {
         let (x, alignment) = (Coordinates::zeros(), Quat::identity());
-        let followed = Followed {
-            model: Model { x, alignment, is_aligned: true, drag: None, starts: Vec::new() },
-            is_still: true,
-            tracks: Vec::new(),
-            levels: Levels { attitude: 0.0, rate: libm::exp(turn.norm_squared()) },
-            dof: [0.0, 1e4],
-            deviation: 0.0,
-            beyond: Vec::new(),
-        };
+        let model = Model { x, alignment, is_aligned: true, drag: None, starts: Vec::new() };
+        let levels = Levels { attitude: 0.0, rate: libm::exp(turn.norm_squared()) };
+        let followed = Followed::at(model, levels, [0.0, 1e4]);
         let values = (turn * share).as_slice().to_vec();
         let found =
             alternatives::Found { values, ..alternatives::Found::gaining(1e4 * turn.norm_squared(), 3) };

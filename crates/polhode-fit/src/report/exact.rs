@@ -395,24 +395,10 @@ mod tests {
                 rates.push(moved.rate + off);
             }
         }
-        let followed = Followed {
-            model,
-            is_still: true,
-            tracks: vec![Track { times, attitudes, rates, used }],
-            levels: Levels { attitude: 0.01, rate: 0.25 },
-            dof: [4.0, 6.0],
-            deviation: 0.0,
-            beyond: Vec::new(),
-        };
-        let read = Read {
-            unit: 2.0,
-            used: vec![(2, 5.0)],
-            local_noise: None,
-            rate_noise: None,
-            largest_turn: 0.0,
-            jumps: 2,
-            has_rates: !has_attitudes,
-        };
+        let tracks = vec![Track { times, attitudes, rates, used }];
+        let levels = Levels { attitude: 0.01, rate: 0.25 };
+        let followed = Followed { tracks, ..Followed::at(model, levels, [4.0, 6.0]) };
+        let read = Read { used: vec![(2, 5.0)], jumps: 2, has_rates: !has_attitudes, ..Read::nothing() };
         let (torque, gain, without) = (Acting::Drag, Some(7.0), Some(x));
         Free { torque, gain, without, ..Free::of(followed, read) }
     }

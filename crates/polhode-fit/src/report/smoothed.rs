@@ -339,15 +339,7 @@ mod tests {
     }
 
     fn read() -> Read {
-        Read {
-            unit: 2.0,
-            used: vec![(0, 1.0), (2, 9.0)],
-            local_noise: None,
-            rate_noise: None,
-            largest_turn: 0.2,
-            jumps: 4,
-            has_rates: false,
-        }
+        Read { used: vec![(0, 1.0), (2, 9.0)], largest_turn: 0.2, jumps: 4, ..Read::nothing() }
     }
 
     /// Without a segment the tensor is a step from that of all, and its covariance is that of the others, enlarged by what the noise does not explain,

@@ -865,31 +865,11 @@ fn correlations_are_covariances_over_deviations() {
 #[test]
 fn rates_beside_attitudes_are_warned_of_by_what_is_left() {
     let free = |times: f64, misread: Option<Misread>, is_aligned: bool| {
-        let followed = Followed {
-            model: Model {
-                x: coordinates(&body()),
-                alignment: Quat::identity(),
-                is_aligned,
-                drag: None,
-                starts: Vec::new(),
-            },
-            is_still: true,
-            tracks: Vec::new(),
-            levels: Levels { attitude: 0.1, rate: 0.5 * times },
-            dof: [100.0, 40.0],
-            deviation: 0.0,
-            beyond: Vec::new(),
-        };
-        let read = Read {
-            unit: 2.0,
-            used: Vec::new(),
-            local_noise: None,
-            rate_noise: Some(1.0),
-            largest_turn: 0.0,
-            jumps: 0,
-            has_rates: true,
-        };
-        Free { misread, ..Free::of(followed, read) }
+        let (x, alignment) = (coordinates(&body()), Quat::identity());
+        let model = Model { x, alignment, is_aligned, drag: None, starts: Vec::new() };
+        let levels = Levels { attitude: 0.1, rate: 0.5 * times };
+        let read = Read { rate_noise: Some(1.0), has_rates: true, ..Read::nothing() };
+        Free { misread, ..Free::of(Followed::at(model, levels, [100.0, 40.0]), read) }
     };
     let most = f64::sqrt(3.5);
     assert!(of_rates(&free(0.999 * most, None, true), None).is_empty());

@@ -370,21 +370,8 @@ mod tests {
         let of = |shares: [f64; 3]| {
             let at =
                 Unknowns { x: coordinates(&Matrix3::from_diagonal(&Vector3::from(shares))), c: Vec::new() };
-            let (radius, root) = (1.0, Form::identity() * 100.0);
-            let (stacked, parts) = (None, Vec::new());
-            let columns = Vec::new();
-            let weak = WeakEstimate {
-                radius,
-                columns,
-                at,
-                moved: 0.0,
-                root,
-                stacked,
-                doubt: Form::zeros(),
-                squares: 0.0,
-                rows: 20,
-                parts,
-            };
+            let root = Form::identity() * 100.0;
+            let weak = WeakEstimate { root, ..WeakEstimate::plain(Vec::new(), at, 20) };
             loss_by_law(&weak, 0.25)
         };
         assert_eq!(of([0.2, 0.35, 0.45]), 0.0);

@@ -696,18 +696,10 @@ mod least_squares {
 
     fn weak(problem: &Problem) -> WeakEstimate {
         let stacked = problem.stacked();
-        WeakEstimate {
-            radius: 1.0,
-            columns: problem.columns.clone(),
-            at: stacked.minimiser().unwrap(),
-            moved: 0.0,
-            root: stacked.root,
-            doubt: Form::zeros(),
-            squares: stacked.squares,
-            rows: stacked.rows,
-            stacked: Some(stacked),
-            parts: Vec::new(),
-        }
+        let (root, squares) = (stacked.root, stacked.squares);
+        let at = stacked.minimiser().unwrap();
+        let plain = WeakEstimate::plain(problem.columns.clone(), at, stacked.rows);
+        WeakEstimate { root, squares, stacked: Some(stacked), ..plain }
     }
 
     /// Of some columns and the tensor the marginal distribution; where these are told, the other columns follow.

@@ -224,6 +224,23 @@ pub(crate) mod tests {
     use nalgebra::Matrix3;
 
     impl WeakEstimate {
+        /// Of an information of 1 at these unknowns, by so many equations, which are not kept.
+        pub(crate) fn plain(columns: Vec<Column>, at: Unknowns, rows: usize) -> WeakEstimate {
+            let (root, doubt, stacked, parts) = (Form::identity(), Form::zeros(), None, Vec::new());
+            WeakEstimate {
+                radius: 1.0,
+                columns,
+                at,
+                moved: 0.0,
+                root,
+                stacked,
+                doubt,
+                squares: 0.0,
+                rows,
+                parts,
+            }
+        }
+
         /// Of whitened rows of several parts at `at`, for noise of this deviation; of what they are made of nothing is to be asked.
         pub(crate) fn of_rows(
             columns: &[Column],
@@ -242,18 +259,9 @@ pub(crate) mod tests {
             let parts: Vec<Part> = parts.into_iter().enumerate().map(part).collect();
             let rows: Vec<&[f64]> = parts.iter().map(|part| part.rows.as_slice()).collect();
             let stacked = Stacked::new(&rows, columns, at, deviation);
-            WeakEstimate {
-                radius: 1.0,
-                columns: columns.to_vec(),
-                at: at.clone(),
-                moved: 0.0,
-                root: stacked.root,
-                doubt: Form::zeros(),
-                squares: stacked.squares,
-                rows: stacked.rows,
-                stacked: Some(stacked),
-                parts,
-            }
+            let (root, squares) = (stacked.root, stacked.squares);
+            let plain = WeakEstimate::plain(columns.to_vec(), at.clone(), stacked.rows);
+            WeakEstimate { root, squares, stacked: Some(stacked), parts, ..plain }
         }
     }
 
@@ -275,18 +283,9 @@ pub(crate) mod tests {
     /// four times the noise of variance 0.25.
     fn estimate(largest: f64, root: f64) -> WeakEstimate {
         let j = Matrix3::from_diagonal(&Vector3::new(0.1, largest, 0.9 - largest));
-        WeakEstimate {
-            radius: 1.0,
-            columns: Vec::new(),
-            at: Unknowns { x: coordinates(&j), c: Vec::new() },
-            moved: 0.0,
-            root: Form::identity() * root,
-            stacked: None,
-            doubt: Form::zeros(),
-            squares: 100.0,
-            rows: 105,
-            parts: Vec::new(),
-        }
+        let at = Unknowns { x: coordinates(&j), c: Vec::new() };
+        let root = Form::identity() * root;
+        WeakEstimate { root, squares: 100.0, ..WeakEstimate::plain(Vec::new(), at, 105) }
     }
 
     /// Rounds stand still up to a hundredth of a deviation, and are near up to a half.

@@ -224,11 +224,7 @@ mod tests {
     #[test]
     fn a_fall_is_told_where_no_torque_was_fitted() {
         let at = Unknowns { x: Coordinates::zeros(), c: Vec::new() };
-        let (root, doubt) = (Form::identity(), Form::zeros());
-        let (columns, parts) = (Vec::new(), Vec::new());
-        let (radius, moved, stacked) = (1.0, f64::INFINITY, None);
-        let weak =
-            WeakEstimate { radius, columns, at, moved, root, stacked, doubt, squares: 0.0, rows: 20, parts };
+        let weak = WeakEstimate { moved: f64::INFINITY, ..WeakEstimate::plain(Vec::new(), at, 20) };
         let of = |slope: f64, torque: TorqueModel| {
             // energy changes by the slope, momentum by half of it
             let times: Vec<f64> = (0..21).map(f64::from).collect();

@@ -93,7 +93,7 @@ mod tests {
     use super::*;
     use crate::columns::column::Unknowns;
     use crate::columns::input::Input;
-    use crate::physical::coordinates::{Coordinates, Form};
+    use crate::physical::coordinates::Coordinates;
     use crate::solve::stacked::Stacked;
 
     /// An estimate of the factor u = 0.5 of all momenta and of c = 0.1 beside it for the y axis, which are known to a fiftieth and a
@@ -104,18 +104,8 @@ mod tests {
             .flat_map(|i| (0..8).map(move |k| if i == k { [50.0, 100.0, 10.0][i.min(2)] } else { 0.0 }))
             .collect();
         let stacked = Stacked::new(&[rows.as_slice()], &columns, &at, 1.0);
-        WeakEstimate {
-            radius: 1.0,
-            columns,
-            at,
-            moved: 0.0,
-            root: stacked.root,
-            doubt: Form::zeros(),
-            squares: 100.0,
-            rows: 105,
-            stacked: Some(stacked),
-            parts: Vec::new(),
-        }
+        let root = stacked.root;
+        WeakEstimate { root, squares: 100.0, stacked: Some(stacked), ..WeakEstimate::plain(columns, at, 105) }
     }
 
     /// A component is 1 + c/u times as large as told, with the deviation of that: of c over u, and of u times c/u².
