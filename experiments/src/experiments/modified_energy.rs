@@ -25,9 +25,9 @@ use crate::experiment::{Context, Report};
 const MOMENTS: [f64; 3] = [0.625, 0.75, 1.0];
 const OMEGA: [f64; 3] = [0.875, 0.25, -0.375];
 
-/// Splittings with an h² term, and the body of the rest.
+/// Splittings with an h² term.
 const SPLITTINGS: [&str; 4] = ["lie-poisson:321", "lie-poisson:213", "two-turn:13", "two-turn:31"];
-/// Its separatrix has λ = 1/√3 at |ω| = 1 rad/s.
+/// The body of the rest: its separatrix has λ = 1/√3 at |ω| = 1 rad/s.
 const REST_MOMENTS: [f64; 3] = [1.0, 2.0, 3.0];
 
 pub(crate) fn run(context: &Context) -> Result<Report, Error> {
@@ -138,10 +138,7 @@ struct Swing {
 /// For steps from 1/4 s on, halved `halvings` times.
 fn swings(name: &str, span: f64, halvings: u32) -> Result<Vec<Swing>, Error> {
     let body = Body::free(Inertia::from_moments(MOMENTS).map_err(unexpected)?);
-    let start = body
-        .enter_omega(Quat::from_components([1.0, 0.0, 0.0, 0.0]), Vec3(OMEGA))
-        .map_err(unexpected)?
-        .to_f64();
+    let start = body.enter_omega(Quat::identity(), Vec3(OMEGA)).map_err(unexpected)?.to_f64();
     let (moments, inverse) = (body.rotor().moments::<f64>(), body.rotor().inverse_moments::<f64>());
     let term = |m: Vec3<f64>| match name.split_once(':') {
         Some(("lie-poisson", axes)) => axes.parse().ok().map(|o: AxisOrder| o.modified_energy(m, moments)),

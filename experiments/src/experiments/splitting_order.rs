@@ -79,9 +79,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     for subject in &SUBJECTS {
         let inertia = Inertia::from_moments(subject.moments).map_err(unexpected)?;
         let body = Body::free(inertia);
-        let start = body
-            .enter_omega(Quat::from_components([1.0, 0.0, 0.0, 0.0]), Vec3(subject.omega_body))
-            .map_err(unexpected)?;
+        let start = body.enter_omega(Quat::identity(), Vec3(subject.omega_body)).map_err(unexpected)?;
         parts.push((subject, body, start));
     }
     let found = context.in_parallel(parts, |(subject, body, start)| of_body(subject, &body, &start, plan));

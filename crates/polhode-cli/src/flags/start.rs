@@ -254,7 +254,7 @@ impl StartArguments {
         let attitude = match (self.attitude(angle_unit), published) {
             (Some(attitude), _) => attitude,
             (None, Some(published)) => Quat::from_components(published.attitude),
-            (None, None) => Quat::from_components([1.0, 0.0, 0.0, 0.0]),
+            (None, None) => Quat::identity(),
         };
         let of_wheels = body.momentum_of_wheels_at(t);
         let from_momentum = |flag: &str, momentum_body: Vec3<f64>| {

@@ -33,12 +33,11 @@ impl Particles {
     fn scattered() -> Self {
         let mut random = Random::new(17);
         let mut vector = || V::from_fn(|_, _| random.between(-1.0, 1.0));
-        let around = |shift: V, x: V| shift + x;
         let (away, drift) = (V::new(1.0, -2.0, 0.5), V::new(0.5, 0.25, -1.0));
         Particles {
             mass: (0..12).map(|_| 1.5 + vector().x).collect(),
-            place: (0..12).map(|_| around(away, vector())).collect(),
-            velocity: (0..12).map(|_| around(drift, vector())).collect(),
+            place: (0..12).map(|_| away + vector()).collect(),
+            velocity: (0..12).map(|_| drift + vector()).collect(),
             force: (0..12).map(|_| vector()).collect(),
         }
     }
@@ -268,7 +267,7 @@ fn rotating_frame(s: &mut Statements) -> Result<(), Error> {
     let now = at(Dd::of(t));
     let w = double(omega(free.body(), now.momentum_body));
     let seen_from_body = derivative(t, in_body) + w.cross(&double(in_body(Dd::of(t))));
-    let formula = now.rotation_of(seen_from_body);
+    let formula = double(now.attitude.rotate(Vec3::of(seen_from_body.into())));
     let text = "a rate of change seen from space is that seen from the body plus w x A";
     s.vector(EQUATIONS, text, [formula, seen_from_space], 1e-14);
 
@@ -300,17 +299,6 @@ fn rotating_frame(s: &mut Statements) -> Result<(), Error> {
         s.number(EQUATIONS, text, [torque[axis], computed], torque.norm(), 1e-13);
     }
     Ok(())
-}
-
-/// Rotates vectors of the body into space.
-trait Rotation {
-    fn rotation_of(&self, v: V) -> V;
-}
-
-impl Rotation for polhode::body::Point<Dd> {
-    fn rotation_of(&self, v: V) -> V {
-        double(self.attitude.rotate(Vec3::of(v.into())))
-    }
 }
 
 fn euler_angles(s: &mut Statements) -> Result<(), Error> {
