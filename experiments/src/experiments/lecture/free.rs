@@ -4,12 +4,11 @@ use nalgebra::Vector3;
 use polhode::body::Time;
 use polhode::catalogue;
 use polhode::flow::FreeMotion;
-use polhode::inertia::Inertia;
 use polhode::num::elliptic::Modulus;
 use polhode::num::{Dd, Real};
 use polhode_files::error::Error;
 
-use super::{Point, Statements, second_derivative, unexpected};
+use super::{Point, Statements, free_motion, second_derivative, unexpected};
 use crate::statistics::larger;
 
 const FREE: &str = "17.4";
@@ -24,11 +23,6 @@ pub(super) fn statements(s: &mut Statements) -> Result<(), Error> {
         next_to_axis(s, axis)?;
     }
     flips(s)
-}
-
-fn motion(moments: [f64; 3], omega: V) -> Result<FreeMotion, Error> {
-    let inertia = Inertia::from_moments(moments).map_err(unexpected)?;
-    FreeMotion::from_omega(&inertia, Default::default(), omega).map_err(unexpected)
 }
 
 /// The largest relative error of energy and of L in space, over a thousand radians of every body of the catalogue without wheels.
@@ -55,7 +49,7 @@ fn conserved(s: &mut Statements) -> Result<(), Error> {
 /// Bodies whose angular velocity stays.
 fn constant(s: &mut Statements) -> Result<(), Error> {
     let mut stays = |text: String, moments: [f64; 3], omega: V| -> Result<(), Error> {
-        let free = motion(moments, omega)?;
+        let free = free_motion(moments, omega)?;
         let mut worst = 0.0_f64;
         for k in 1..=200 {
             let now = free.omega_at(5.0 * f64::from(k)).map_err(unexpected)?;
@@ -82,7 +76,7 @@ fn next_to_axis(s: &mut Statements, axis: usize) -> Result<(), Error> {
     let perturbed = |small: f64| {
         let mut omega = V::ith(axis, 1.0);
         omega[j] = small;
-        motion(MOMENTS, omega)
+        free_motion(MOMENTS, omega)
     };
     let smalls = || (6..12).map(|n| libm::exp2(-f64::from(n)));
 
@@ -128,7 +122,7 @@ fn next_to_axis(s: &mut Statements, axis: usize) -> Result<(), Error> {
 /// The body that turns over: intervals between flips in closed form, evaluated without cancellation.
 fn flips(s: &mut Statements) -> Result<(), Error> {
     for (omega, mode) in [(V::new(0.01, 1.0, 0.02), "short-axis"), (V::new(0.02, 1.0, 0.01), "long-axis")] {
-        let free = motion(MOMENTS, omega)?;
+        let free = free_motion(MOMENTS, omega)?;
         let [i1, i2, i3] = MOMENTS;
         let [w1, w2, w3] = [omega.x, omega.y, omega.z].map(|w| w * w);
         // |L|^2 - 2 E I_1, 2 E I_3 - |L|^2 and |L|^2 - 2 E I_2

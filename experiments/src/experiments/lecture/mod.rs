@@ -10,6 +10,8 @@ mod motion;
 mod symmetric;
 
 use nalgebra::Vector3;
+use polhode::flow::FreeMotion;
+use polhode::inertia::Inertia;
 use polhode::num::{Dd, Real};
 use polhode::rotation::Vec3;
 use polhode_files::error::{Error, unexpected};
@@ -270,6 +272,12 @@ impl Statements {
             last.note = note;
         }
     }
+}
+
+/// The free motion of a body with these moments from this angular velocity.
+fn free_motion(moments: [f64; 3], omega: Vector3<f64>) -> Result<FreeMotion, Error> {
+    let inertia = Inertia::from_moments(moments).map_err(unexpected)?;
+    FreeMotion::from_omega(&inertia, Default::default(), omega).map_err(unexpected)
 }
 
 /// Derivative at `t` of a vector known in double-double: central difference, truncated below the rounding of `f64`.

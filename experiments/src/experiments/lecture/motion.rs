@@ -2,14 +2,14 @@
 
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use polhode::body::Body;
-use polhode::flow::{FreeMotion, LagrangeTop};
+use polhode::flow::LagrangeTop;
 use polhode::inertia::Inertia;
 use polhode::num::elliptic::Modulus;
 use polhode::num::{Dd, Random, Real};
 use polhode::rotation::{EulerSequence, Quat, Vec3};
 use polhode_files::error::Error;
 
-use super::{Point, Statements, derivative, unexpected};
+use super::{Point, Statements, derivative, free_motion, unexpected};
 use crate::statistics::larger;
 
 const ROTATION: &str = "17.2";
@@ -253,9 +253,7 @@ fn double(v: Vec3<Dd>) -> V {
 
 fn rotating_frame(s: &mut Statements) -> Result<(), Error> {
     let moments = V::new(1.0, 2.0, 3.0);
-    let inertia = Inertia::from_moments(moments.into()).map_err(unexpected)?;
-    let free =
-        FreeMotion::from_omega(&inertia, Default::default(), V::new(0.4, 1.0, -0.3)).map_err(unexpected)?;
+    let free = free_motion(moments.into(), V::new(0.4, 1.0, -0.3))?;
     let t = 1.75;
     // a vector that moves in the body, seen from space and from the body
     let in_body = |t: Dd| {
@@ -350,8 +348,7 @@ fn bearings(s: &mut Statements) -> Result<(), Error> {
     let text = "an unbalanced wheel at constant w needs the torque w x (I w) = (I3 - I) w^2 sin cos";
     s.number("17.4", text, [formula, needed.norm()], formula, 1e-13);
     s.number("17.4", "that torque has no part along the axle", [0.0, needed.dot(&w) / rate], formula, 1e-13);
-    let inertia = Inertia::from_moments(moments.into()).map_err(unexpected)?;
-    let free = FreeMotion::from_omega(&inertia, Default::default(), w).map_err(unexpected)?;
+    let free = free_motion(moments.into(), w)?;
     let bent = derivative(0.0, |t| {
         free.point_at_dd(t).attitude.rotate(omega(free.body(), free.point_at_dd(t).momentum_body))
     });

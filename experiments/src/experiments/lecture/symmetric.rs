@@ -2,12 +2,10 @@
 
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 use polhode::body::State;
-use polhode::flow::FreeMotion;
-use polhode::inertia::Inertia;
 use polhode::num::{Dd, Real};
 use polhode_files::error::Error;
 
-use super::{Point, Statements, second_derivative, unexpected};
+use super::{Point, Statements, free_motion, second_derivative, unexpected};
 use crate::statistics::larger;
 
 const SYMMETRIC: &str = "17.5";
@@ -23,11 +21,6 @@ pub(super) fn statements(s: &mut Statements) -> Result<(), Error> {
     wobbling_plate(s)
 }
 
-fn motion(across: f64, along: f64, omega: V) -> Result<FreeMotion, Error> {
-    let inertia = Inertia::from_moments([across, across, along]).map_err(unexpected)?;
-    FreeMotion::from_omega(&inertia, Default::default(), omega).map_err(unexpected)
-}
-
 /// Largest value over a hundred seconds.
 fn worst(of: impl Fn(f64) -> Result<f64, Error>) -> Result<f64, Error> {
     (1..=400).try_fold(0.0_f64, |worst, k| Ok(larger(worst, of(0.25 * f64::from(k))?)))
@@ -35,7 +28,7 @@ fn worst(of: impl Fn(f64) -> Result<f64, Error>) -> Result<f64, Error> {
 
 fn body_cone(s: &mut Statements, kind: &str, across: f64, along: f64) -> Result<(), Error> {
     let (omega, spin) = (0.6, 1.25);
-    let free = motion(across, along, V::new(omega, 0.0, spin))?;
+    let free = free_motion([across, across, along], V::new(omega, 0.0, spin))?;
     let now = |t: f64| free.omega_at(t).map_err(unexpected);
     let off = worst(|t| Ok((now(t)?.z / spin - 1.0).abs()))?;
     s.constant(SYMMETRIC, format!("{kind}: w3 is constant"), off, 1e-15);
@@ -106,7 +99,7 @@ fn wobbling_plate(s: &mut Statements) -> Result<(), Error> {
         let small = libm::exp2(-f64::from(k));
         let (sin, cos) = libm::sincos(small);
         // I = 1, I3 = 2 and |L| = 2
-        let free = motion(1.0, 2.0, V::new(2.0 * sin, 0.0, cos))?;
+        let free = free_motion([1.0, 1.0, 2.0], V::new(2.0 * sin, 0.0, cos))?;
         let (t, axis) = (0.5, |x: State| x.rotation() * V::z());
         let (start, later) = (free.at(0.0).map_err(unexpected)?, free.at(t).map_err(unexpected)?);
         let momentum = (start.rotation() * start.momentum()).normalize();
