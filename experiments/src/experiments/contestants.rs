@@ -1,6 +1,9 @@
 //! Who is compared beside the catalogue, and how the work of a step is counted.
 
-use polhode::method::Cost;
+use std::ops::RangeInclusive;
+
+use polhode::method::{AnyMethod, Cost};
+use polhode_files::error::{Error, unexpected};
 
 /// Schemes beside the catalogue; those that a force does not admit are left out there.
 pub(super) const SCHEMES: [&str; 21] = [
@@ -47,4 +50,22 @@ pub(super) fn weight(cost: Cost) -> f64 {
 /// Evaluations of a step, of all kinds together.
 pub(super) fn weighed(cost: Cost) -> f64 {
     f64::from(cost.evaluations()) + f64::from((SOLUTION - 1) * cost.solves)
+}
+
+/// `method` at the tightest of the tolerances 10^(-k/2) before the first that is too dear; at the loosest where that is.
+pub(super) fn affordable(
+    method: &dyn AnyMethod,
+    tolerances: RangeInclusive<i32>,
+    is_too_dear: impl Fn(&dyn AnyMethod) -> Result<bool, Error>,
+) -> Result<Box<dyn AnyMethod>, Error> {
+    let mut chosen = None;
+    for k in tolerances {
+        // the tightest ones are not those of every method
+        let Ok(tried) = method.with_tolerance(libm::exp10(-0.5 * f64::from(k))) else { continue };
+        if is_too_dear(tried.as_ref())? && chosen.is_some() {
+            break;
+        }
+        chosen = Some(tried);
+    }
+    chosen.ok_or_else(|| unexpected("a method takes none of the tolerances"))
 }

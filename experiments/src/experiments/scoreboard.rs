@@ -13,7 +13,7 @@ use polhode_files::error::{Error, unexpected};
 use polhode_pages::screen::{WIDTH, bar, wrapped};
 use polhode_pages::table::{self, Column, Table, row, to_digits};
 
-use super::contestants::{SCHEMES, TAKEN_BACK, knows_the_motion, weighed, weight};
+use super::contestants::{SCHEMES, TAKEN_BACK, affordable, knows_the_motion, weighed, weight};
 use crate::experiment::{Context, Report};
 use crate::statistics::largest;
 
@@ -189,20 +189,12 @@ impl Field {
     fn affordable(&self, method: &dyn AnyMethod) -> Result<Box<dyn AnyMethod>, Error> {
         let step = TRIED / self.speed / 8.0;
         let motion = self.motions.first().ok_or_else(|| unexpected("a body has no start"))?;
-        let mut chosen = None;
-        for k in TOLERANCES {
-            let tolerance = libm::exp10(-0.5 * f64::from(k));
-            // the tightest ones are not those of every method
-            let Ok(tried) = method.with_tolerance(tolerance) else { continue };
-            let mut care = Care::default();
-            (care.watch, care.until) = (Watch::AtSamples, self.turned.min(TRIED) / self.speed);
-            let run = motion.judge(tried.as_ref(), step, care).map_err(unexpected)?;
-            if chosen.is_some() && self.cost(tried.as_ref(), &run) > EVALUATIONS {
-                break;
-            }
-            chosen = Some(tried);
-        }
-        chosen.ok_or_else(|| unexpected("a method takes none of the tolerances"))
+        let mut care = Care::default();
+        (care.watch, care.until) = (Watch::AtSamples, self.turned.min(TRIED) / self.speed);
+        affordable(method, TOLERANCES, |tried| {
+            let run = motion.judge(tried, step, care).map_err(unexpected)?;
+            Ok(self.cost(tried, &run) > EVALUATIONS)
+        })
     }
 }
 

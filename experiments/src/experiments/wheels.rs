@@ -19,7 +19,7 @@ use nalgebra::Vector3;
 use polhode::body::{Body, Conserved, State, Wheel};
 use polhode::flow::{GyrostatMotion, Stability};
 use polhode::inertia::Inertia;
-use polhode::method::{AnyMethod, Claimed, Cost, method};
+use polhode::method::{Claimed, Cost, method};
 use polhode::num::{Dd, Random};
 use polhode::rotation::{Quat, Vec3};
 use polhode::run::{Run, Watch};
@@ -28,7 +28,7 @@ use polhode_files::error::{Error, unexpected};
 use polhode_pages::figure::{Curve, Figure, Scale};
 use polhode_pages::table::{Column, Table, row};
 
-use super::contestants::{weighed, weight};
+use super::contestants::{affordable, weighed, weight};
 use crate::experiment::{Context, Report};
 use crate::statistics::largest;
 use crate::timing::{best, discard};
@@ -571,7 +571,15 @@ fn of_method(name: &str, body: &Body, starts: &[Start], turned: f64) -> Result<V
     let named = method(name).map_err(unexpected)?;
     let of_step = named.claims(body.problem()).map(|claims| claims.cost).unwrap_or_default();
     let chosen = match (named.tolerance(), starts.first()) {
-        (Some(_), Some(start)) => affordable(named.as_ref(), of_step, start, turned)?,
+        (Some(_), Some(start)) => {
+            let step = turned / start.rate / f64::from(LOOKS);
+            let mut care = Care::default();
+            (care.watch, care.until) = (Watch::AtSamples, TRIED * turned / start.rate);
+            affordable(named.as_ref(), TOLERANCES, |tried| {
+                let run = start.truth.judge(tried, step, care).map_err(unexpected)?;
+                Ok(cost(&run, of_step, start.rate) > EVALUATIONS)
+            })?
+        }
         _ => named,
     };
     let each = starts.iter().map(|start| {
@@ -598,29 +606,6 @@ fn of_method(name: &str, body: &Body, starts: &[Start], turned: f64) -> Result<V
 /// Evaluations for each radian, an implicit solution weighed.
 fn cost(run: &Judged, of_step: Cost, rate: f64) -> f64 {
     run.evaluations as f64 * weight(of_step) / (run.last.elapsed.hi() * rate)
-}
-
-/// At the tightest tolerance whose cost is at most that of the others; at the loosest where each costs more.
-fn affordable(
-    method: &dyn AnyMethod,
-    of_step: Cost,
-    start: &Start,
-    turned: f64,
-) -> Result<Box<dyn AnyMethod>, Error> {
-    let step = turned / start.rate / f64::from(LOOKS);
-    let mut chosen = None;
-    for k in TOLERANCES {
-        // the tightest ones are not those of every method
-        let Ok(tried) = method.with_tolerance(libm::exp10(-0.5 * f64::from(k))) else { continue };
-        let mut care = Care::default();
-        (care.watch, care.until) = (Watch::AtSamples, TRIED * turned / start.rate);
-        let run = start.truth.judge(tried.as_ref(), step, care).map_err(unexpected)?;
-        if chosen.is_some() && cost(&run, of_step, start.rate) > EVALUATIONS {
-            break;
-        }
-        chosen = Some(tried);
-    }
-    chosen.ok_or_else(|| unexpected("a method takes none of the tolerances"))
 }
 
 fn timing() -> Result<Table, Error> {
