@@ -16,38 +16,31 @@ use crate::experiment::{Context, Report};
 /// Interval, s.
 const STEP: f64 = 0.01;
 
-/// A rate that turns about body z with a period of 500 samples, so that a table holds its readings: the attitude is in closed form.
-#[derive(Clone, Copy)]
-struct Nodding;
-
+/// Samples in which a rate turns about body z once, so that a table holds its readings and the attitude is in closed form.
 const PERIOD: usize = 500;
 
-impl Nodding {
-    fn readings() -> Vec<Vec3<f64>> {
-        let of = |k: usize| {
-            let (sin, cos) = Real::sin_cos(TAU * k as f64 / PERIOD as f64);
-            Vec3([cos, sin, 0.5])
-        };
-        (0..PERIOD).map(of).collect()
-    }
+fn readings() -> Vec<Vec3<f64>> {
+    let of = |k: usize| {
+        let (sin, cos) = Real::sin_cos(TAU * k as f64 / PERIOD as f64);
+        Vec3([cos, sin, 0.5])
+    };
+    (0..PERIOD).map(of).collect()
+}
 
-    /// `exp(½ t (1, 0, 0.5 + ν)) exp(−½ t (0, 0, ν))` after whole periods, ν the rate of the period.
-    fn attitude(samples: u64) -> Quat<f64> {
-        let rate = TAU / (PERIOD as f64 * STEP);
-        let axis = Vec3([1.0, 0.0, 0.5 + rate]);
-        // the angle of a period, reduced before it is taken so often
-        let turn = axis.norm() * STEP * PERIOD as f64;
-        let periods = (samples / PERIOD as u64) as f64;
-        let angle = turn.rem_euclid(TAU);
-        let whole = periods * angle;
-        let second = if (samples / PERIOD as u64) % 2 == 1 { -1.0 } else { 1.0 };
-        Quat::exponential(axis * (whole.rem_euclid(2.0 * TAU) / axis.norm())) * second
-    }
+/// `exp(½ t (1, 0, 0.5 + ν)) exp(−½ t (0, 0, ν))` after whole periods, ν the rate of the period.
+fn attitude(samples: u64) -> Quat<f64> {
+    let rate = TAU / (PERIOD as f64 * STEP);
+    let axis = Vec3([1.0, 0.0, 0.5 + rate]);
+    // the angle of a period, reduced before it is taken so often
+    let angle = (axis.norm() * STEP * PERIOD as f64).rem_euclid(TAU);
+    let periods = samples / PERIOD as u64;
+    let second = if periods % 2 == 1 { -1.0 } else { 1.0 };
+    Quat::exponential(axis * ((periods as f64 * angle).rem_euclid(2.0 * TAU) / axis.norm())) * second
 }
 
 /// Seconds of a sample and the attitude after `samples`, a multiple of the period.
 fn stream(rule: Rule, samples: u64) -> Result<(f64, Quat<f64>), Error> {
-    let readings = Nodding::readings();
+    let readings = readings();
     let mut strapdown = Strapdown::new(Kind::Rate, rule, Quat::identity()).map_err(unexpected)?;
     let clock = Instant::now();
     for k in 0..=samples {
@@ -59,7 +52,7 @@ fn stream(rule: Rule, samples: u64) -> Result<(f64, Quat<f64>), Error> {
 
 /// What everyone has: q ← q ∘ (1, ½ h ω), normalised.
 fn product_loop(samples: u64) -> (f64, Quat<f64>) {
-    let readings = Nodding::readings();
+    let readings = readings();
     let mut q = Quat::identity();
     let clock = Instant::now();
     for k in 0..samples {
@@ -72,7 +65,7 @@ fn product_loop(samples: u64) -> (f64, Quat<f64>) {
 pub(super) fn time(context: &Context, report: &mut Report) -> Result<(), Error> {
     let samples: u64 = context.scale.pick(10_000, 100_000, 10_000_000);
     let magnus = |order, count| Rule::magnus(order, count).map_err(unexpected);
-    let truth = Nodding::attitude(samples);
+    let truth = attitude(samples);
     let mut errors = Table::new(
         "stream",
         "A stream of samples, 0.01 s apart, at 1.1 rad/s: error at the end, arithmetic of a sample, and all the memory that the stream takes.",
@@ -100,7 +93,7 @@ pub(super) fn time(context: &Context, report: &mut Report) -> Result<(), Error> 
         add(rule.to_string(), seconds, end, Some(cost(Kind::Rate, rule)?), size_of::<Strapdown<f64>>());
     }
     let rule = magnus(6, 8)?;
-    let (readings, some) = (Nodding::readings(), samples / 10);
+    let (readings, some) = (readings(), samples / 10);
     let sensor = Sensor::default().with_noise(1e-3);
     let mut budgeted = Budgeted::new(Kind::Rate, rule, Default::default(), sensor).map_err(unexpected)?;
     let clock = Instant::now();

@@ -5,6 +5,7 @@ use polhode::laws::{Counted, operations};
 use polhode::num::Real;
 use polhode::rotation::{Quat, Vec3};
 use polhode::strapdown::{Kind, Rule, Strapdown};
+use polhode::truth::LOST;
 use polhode_files::error::{Error, unexpected};
 use polhode_pages::figure::{Curve, Figure};
 use polhode_pages::table::{Column, Table, row};
@@ -17,9 +18,6 @@ const OMEGA: [f64; 3] = [0.4, 1.0, -0.3];
 
 /// Step, s, and time, s: 0.011, 0.055 and 0.22 rad a sample.
 const CASES: [(f64, f64); 3] = [(0.01, 200.0), (0.05, 1000.0), (0.2, 1000.0)];
-
-/// Beyond this an attitude is lost, rad.
-const LOST: f64 = 1.0;
 
 /// The rule whose arithmetic the others get: by more samples in the same time.
 const RICH: (u32, usize) = (6, 8);
