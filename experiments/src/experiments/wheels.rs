@@ -102,7 +102,7 @@ impl Stopped {
     /// Of a body of [`MOMENTS`] with one wheel, at its speed in `state`.
     fn new(axis: Vector3<f64>, speed: f64, omega: Vector3<f64>, state: &State) -> Result<Self, Error> {
         let wheel = Wheel::new(axis, WHEEL, speed).map_err(unexpected)?.free(omega);
-        let body = carrier()?.with_wheel(wheel).map_err(unexpected)?;
+        let body = carrier(MOMENTS)?.with_wheel(wheel).map_err(unexpected)?;
         let motion = GyrostatMotion::new(&body, state).map_err(unexpected)?;
         let now = momentum(&body, 0.0, state);
         let spins = motion.steady_spins();
@@ -131,8 +131,8 @@ impl Stopped {
     }
 }
 
-fn carrier() -> Result<Body, Error> {
-    Ok(Body::free(Inertia::from_moments(MOMENTS).map_err(unexpected)?))
+fn carrier(moments: [f64; 3]) -> Result<Body, Error> {
+    Ok(Body::free(Inertia::from_moments(moments).map_err(unexpected)?))
 }
 
 /// One turn by a wheel along `axis`.
@@ -162,7 +162,7 @@ fn turn(axis: Vector3<f64>, duration: f64) -> Result<Turn, Error> {
     let wheel = Wheel::new(axis, WHEEL, 0.0)
         .and_then(|wheel| wheel.driven(torque, [0.0, duration], omega))
         .map_err(unexpected)?;
-    let body = carrier()?.with_wheel(wheel).map_err(unexpected)?;
+    let body = carrier(MOMENTS)?.with_wheel(wheel).map_err(unexpected)?;
     let start = body.state(Default::default(), omega).map_err(unexpected)?;
     let taylor = method("taylor").map_err(unexpected)?;
     let mut run = Run::new(&taylor, &body, &start, LOOK).map_err(unexpected)?;
@@ -318,8 +318,7 @@ fn printed(report: &mut Report) -> Result<(), Error> {
     let total = moments[1] * spin;
     let is_stable = |speed: f64| -> Result<bool, Error> {
         let held = Wheel::new(Vector3::y(), wheel, speed).map_err(unexpected)?;
-        let inertia = Inertia::from_moments(moments).map_err(unexpected)?;
-        let body = Body::free(inertia).with_wheel(held).map_err(unexpected)?;
+        let body = carrier(moments)?.with_wheel(held).map_err(unexpected)?;
         // any start of the same |L|
         let mut motions = [0.3, 0.7].into_iter().filter_map(|lean| {
             let (sin, cos) = libm::sincos(lean);
@@ -379,7 +378,7 @@ fn switched(context: &Context, report: &mut Report) -> Result<f64, Error> {
     let still = Wheel::new(Vector3::new(1.0, 2.0, -2.0), 0.05, 60.0).map_err(unexpected)?;
     let along = |speed: f64| Wheel::new(Vector3::z(), inertia, speed).map_err(unexpected);
     let with = |wheel: Wheel| {
-        carrier_of([10.0, 12.0, 15.0])?
+        carrier([10.0, 12.0, 15.0])?
             .with_wheel(wheel)
             .and_then(|body| body.with_wheel(still))
             .map_err(unexpected)
@@ -436,10 +435,6 @@ fn switched(context: &Context, report: &mut Report) -> Result<f64, Error> {
     Ok(worst)
 }
 
-fn carrier_of(moments: [f64; 3]) -> Result<Body, Error> {
-    Ok(Body::free(Inertia::from_moments(moments).map_err(unexpected)?))
-}
-
 const METHODS: [&str; 7] = [
     "rk4",
     "lie-poisson@suzuki-4",
@@ -464,7 +459,7 @@ const LOOKS: u32 = 32;
 /// A spacecraft with four wheels on a pyramid.
 fn pyramid() -> Result<Body, Error> {
     let wheels = [([1.0, 0.0], 300.0), ([0.0, 1.0], -200.0), ([-1.0, 0.0], 150.0), ([0.0, -1.0], 250.0)];
-    wheels.iter().try_fold(carrier()?, |body, &([x, y], speed)| {
+    wheels.iter().try_fold(carrier(MOMENTS)?, |body, &([x, y], speed)| {
         let wheel = Wheel::new(Vector3::new(x, y, 0.75), 0.01, speed).map_err(unexpected)?;
         body.with_wheel(wheel).map_err(unexpected)
     })
