@@ -145,7 +145,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
 }
 
 /// The axes of the least, the middle and the largest moment.
-fn ascending(moments: Vec3<f64>) -> [usize; 3] {
+pub(super) fn ascending(moments: Vec3<f64>) -> [usize; 3] {
     let mut axes = [0, 1, 2];
     axes.sort_by(|&i, &j| moments[i].total_cmp(&moments[j]));
     axes

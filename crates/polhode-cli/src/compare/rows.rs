@@ -122,9 +122,7 @@ impl Compare {
         };
         Ok((row, failure))
     }
-}
 
-impl Compare {
     pub(super) fn columns(&self, body: &Body) -> Vec<Column> {
         let mut columns = columns(body);
         if self.phase {

@@ -9,6 +9,7 @@ use polhode::truth::{AGREEMENT, Truth};
 use polhode_files::error::{Error, unexpected};
 use polhode_files::text::short;
 
+use super::super::separatrix::ascending;
 use crate::experiment::Scale;
 use crate::statistics::rounded;
 
@@ -102,12 +103,11 @@ pub(super) fn all(scale: Scale) -> Result<Vec<Case>, Error> {
         let how = "ω = 1 rad/s in all directions";
         let name_here = format!("{name}, generic");
         cases.push(Case::new(name_here, Kind::Free, body.clone(), (starts, how.into()), closed)?);
-        let mut axes = [0, 1, 2];
-        axes.sort_by(|&i, &j| moments[i].total_cmp(&moments[j]));
+        let [least, middle, largest] = ascending(Vec3(*moments));
         let starts = drawn(cases.len(), members, |random| {
             let (sin, cos) = libm::sincos(random.between(0.0, TURN));
             let mut near = [0.0; 3];
-            (near[axes[0]], near[axes[1]], near[axes[2]]) = (NEAR * cos, 1.0, NEAR * sin);
+            (near[least], near[middle], near[largest]) = (NEAR * cos, 1.0, NEAR * sin);
             (near, UPRIGHT)
         });
         let how = format!("ω = 1 rad/s within {NEAR} rad of the middle axis");
