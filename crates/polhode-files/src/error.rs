@@ -301,6 +301,7 @@ impl From<TableError> for Error {
         Self::Table(error)
     }
 }
+
 /// What ours alone can cause: catalogues and examples are valid; if one is not, that is what failed.
 pub fn unexpected(error: impl std::fmt::Display) -> Error {
     Error::Failed(error.to_string())

@@ -97,8 +97,7 @@ pub fn seconds(text: &str, epoch: Option<Epoch>) -> Result<f64, String> {
     }
     match epoch {
         Some(Epoch { date: epoch, scale }) => {
-            let date = date(text)?;
-            let date = scale.map_or(date, |scale| date.or_in(scale));
+            let date = Epoch::new(date(text)?, scale).date;
             date.seconds_since(&epoch).map_err(|error| format!("'{text}': {error}"))
         }
         None => duration(text).map_err(|error| match text.parse::<Date>() {

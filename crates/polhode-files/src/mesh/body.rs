@@ -86,7 +86,7 @@ impl MeshOptions {
     pub fn body(&self, path: &Path, amount: Amount) -> Result<MassProperties, Error> {
         let refused = |error: MassError| Error::Input(format!("mesh {}: {error}", path.display()));
         let surface = self.surface(path)?;
-        if let Some(thickness) = self.shell {
+        let body = if let Some(thickness) = self.shell {
             let half = 0.5 * surface.extents().into_iter().fold(0.0, f64::max);
             if thickness > half {
                 let rule =
@@ -102,12 +102,11 @@ impl MeshOptions {
                 Amount::Density(density) => Amount::Density(density * thickness),
                 mass => mass,
             };
-            let body = surface.sheet(amount).map_err(refused)?;
-            self.ask_for_the_unit(path, &surface, &body);
-            return Ok(body);
-        }
-        let mesh = self.mesh(path, &surface)?;
-        let body = mesh.with(amount).map_err(refused)?;
+            surface.sheet(amount)
+        } else {
+            self.mesh(path, &surface)?.with(amount)
+        };
+        let body = body.map_err(refused)?;
         self.ask_for_the_unit(path, &surface, &body);
         Ok(body)
     }

@@ -5,7 +5,7 @@ use polhode::record::{Record, RecordError};
 use polhode::units::{MomentumUnit, RateUnit, TorqueUnit};
 
 use crate::error::{Rule, TableError};
-use crate::table::Table;
+use crate::table::{RATE_ENDINGS, Table};
 
 /// Columns beside the rates, and their values at the rows.
 #[derive(Default)]
@@ -27,7 +27,7 @@ impl Inputs {
         let momenta = triple(table, 'h', "N m s", |unit| MomentumUnit::named(unit?).map(|_| ()))?;
         // without a unit they may as well be a translation
         let torques = triple(table, 't', "N m", |unit| TorqueUnit::named(unit?).map(|_| ()))?;
-        let column = speed_column(table);
+        let column = table.header.names.iter().position(|name| name.is("wheel", RATE_ENDINGS));
         let speed = match (wheel, column) {
             (None, Some(place)) => {
                 let unused = Rule::Other("the column is not used".into());
@@ -36,7 +36,7 @@ impl Inputs {
                 None
             }
             (Some(wheel), Some(place)) => {
-                let unit = table.header.names[place].unit_behind("wheel", crate::table::RATE_ENDINGS);
+                let unit = table.header.names[place].unit_behind("wheel", RATE_ENDINGS);
                 let Some(known) = unit.as_deref().and_then(RateUnit::named) else {
                     let rule = match unit {
                         None => Rule::Unit("rad/s, deg/s or rpm"),
@@ -107,11 +107,6 @@ impl Inputs {
         }
         Ok(record)
     }
-}
-
-/// The column of the speed of a wheel.
-fn speed_column(table: &Table) -> Option<usize> {
-    table.header.names.iter().position(|name| name.is("wheel", crate::table::RATE_ENDINGS))
 }
 
 /// The columns of a vector, `letter` and an axis, or none; two of them are a mistake, and so is a unit that is not `known`.

@@ -93,7 +93,7 @@ impl<'t> Rows<'t> {
     /// The record of these rows.
     pub(super) fn record(&self, rows: Vec<Row>) -> Result<Record, TableError> {
         let (table, header) = (&self.table, &self.table.header);
-        let time = header.time.map_or(0, |place| place);
+        let time = header.time.unwrap_or(0);
         let columns = [time, self.rates[0], self.rates[1], self.rates[2]];
         let is_read = |place: usize| {
             columns[1..].contains(&place)
@@ -101,10 +101,11 @@ impl<'t> Rows<'t> {
                 || self.inputs.reads(place, &header.names[place].letters)
         };
         let others = header.names.iter().enumerate().filter(|(place, _)| !is_read(*place));
-        let called = |(place, text): (usize, &str)| {
-            if text.is_empty() { format!("column {}", place + 1) } else { text.into() }
-        };
-        let unused = others.map(|(place, name)| called((place, name.text.as_str()))).collect();
+        let unused = others.map(|(place, name)| match &*name.text {
+            "" => format!("column {}", place + 1),
+            text => text.into(),
+        });
+        let unused = unused.collect();
         let names = columns.map(|column| header.names[column].text.clone());
         let of_rows = || rows.iter().map(|(line, _)| *line).collect::<Vec<usize>>();
         let lines = self.inputs.are_given().then(of_rows);
@@ -118,7 +119,7 @@ impl<'t> Rows<'t> {
     }
 
     /// A refusal of the library, in the words of tables.
-    pub(super) fn refused(&self, error: RecordError) -> TableError {
+    fn refused(&self, error: RecordError) -> TableError {
         let rule = match error {
             RecordError::Empty { window: None, .. } => Rule::Rows,
             other => Rule::Other(other.to_string()),

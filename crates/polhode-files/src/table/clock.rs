@@ -1,7 +1,6 @@
 //! Times of rows: numbers in a unit, counts since 1970, dates; and what lines before the header say of the columns.
 
-use polhode::units::Date;
-use polhode::units::{RateUnit, TimeUnit};
+use polhode::units::{Date, RateUnit, TimeUnit};
 
 use super::cells::may_part_thousands;
 use super::lines::Line;
