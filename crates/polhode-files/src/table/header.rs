@@ -139,36 +139,34 @@ impl Header {
 
     /// The names of the other columns, of those that have one; the places and velocities of MuJoCo are known to be such.
     pub(crate) fn unread(&self) -> impl Iterator<Item = &str> {
-        self.others().map(|name| name.text.trim()).filter(|name| !name.is_empty())
+        self.others().map(|(_, name)| name.text.trim()).filter(|name| !name.is_empty())
     }
 
     /// Names of columns that are not read and hold the attitude of a body with a name of its own; none where there is none.
     pub(crate) fn second_attitude(&self) -> Vec<&str> {
-        let others: Vec<Name> = self.others().cloned().collect();
+        let others: Vec<Name> = self.others().map(|(_, name)| name.clone()).collect();
         let bodies = owned(&others).ok().flatten().unwrap_or_default();
         let places =
             bodies.into_iter().find_map(|body| body.attitude).map_or(Vec::new(), |group| group.places);
-        places.into_iter().filter_map(|place| self.others().nth(place)).map(|name| name.text.trim()).collect()
+        places
+            .into_iter()
+            .filter_map(|place| self.others().nth(place))
+            .map(|(_, name)| name.text.trim())
+            .collect()
     }
 
     /// A column that is a time by its name too, and no counter, beside the one that is read.
     pub(crate) fn second_time(&self) -> Option<usize> {
         self.time?;
-        let read: Vec<usize> =
-            self.columns().into_iter().chain(self.time).chain(self.nanoseconds).chain(self.id).collect();
         let is_time = |name: &Name| name.time_rank().is_some() && !name.is_counter();
-        let mut others =
-            (0..).zip(&self.names).filter(|(place, _)| !self.is_generalized && !read.contains(place));
-        others.find(|(_, name)| is_time(name)).map(|(place, _)| place)
+        self.others().find(|(_, name)| is_time(name)).map(|(place, _)| place)
     }
 
-    /// The names that are not read.
-    fn others(&self) -> impl Iterator<Item = &Name> {
+    /// The names that are not read, with their places.
+    fn others(&self) -> impl Iterator<Item = (usize, &Name)> {
         let read: Vec<usize> =
             self.columns().into_iter().chain(self.time).chain(self.nanoseconds).chain(self.id).collect();
-        let others =
-            (0..).zip(&self.names).filter(move |(place, _)| !self.is_generalized && !read.contains(place));
-        others.map(|(_, name)| name)
+        (0..).zip(&self.names).filter(move |(place, _)| !self.is_generalized && !read.contains(place))
     }
 
     /// The one component that a quaternion or an angular velocity lacks, or that there is none.
