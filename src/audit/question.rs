@@ -1,8 +1,9 @@
 //! What is asked of a record, and what is claimed of it.
 
-use super::Trajectory;
 use super::bodies::Told;
-use super::{AngleUnit, Angles, AuditError, Direction, Frame, QuaternionOrder, RateUnit, Reading};
+use super::{
+    AngleUnit, Angles, AuditError, Direction, Frame, QuaternionOrder, RateUnit, Reading, Trajectory,
+};
 use crate::body::{Body, WheelAtStart};
 
 /// Most noise of the attitude that may be declared, rad, and the largest tolerance, rad and relative: more hides any motion.

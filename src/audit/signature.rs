@@ -1,9 +1,8 @@
 //! Which integrator leaves the errors of a record: those of the catalogue and some others are run from its start.
 
-use super::Signature;
 use super::motion::motion;
 use super::states::{Quantities, Row, states};
-use super::{Reading, Trajectory};
+use super::{Reading, Signature, Trajectory};
 use crate::body::{Body, Clock, Conserved, Problem};
 use crate::inertia::Symmetry;
 use crate::method::{

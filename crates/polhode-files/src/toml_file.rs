@@ -74,12 +74,9 @@ impl<'t> Section<'t> {
     /// Another number, or a value of another kind.
     pub fn positive(&self, key: &str) -> Result<Option<f64>, Error> {
         let Some(value) = self.value(key) else { return Ok(None) };
-        self.check_positive(key, self.number(key, value)?).map(Some)
-    }
-
-    fn check_positive(&self, key: &str, number: f64) -> Result<f64, Error> {
+        let number = self.number(key, value)?;
         if number > 0.0 {
-            return Ok(number);
+            return Ok(Some(number));
         }
         Err(self.at(key, &format!("{number:?} is not positive; give a number above zero")))
     }

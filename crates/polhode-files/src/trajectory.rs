@@ -127,17 +127,13 @@ fn found(mut table: Table) -> Result<FoundTrajectory, TableError> {
     let times = rows.bodies.first().map_or(&[][..], |body| &body.times);
     let read_as = table.read_as(times.windows(2).map(|pair| pair[1] - pair[0]).collect());
     let bodies = rows.bodies.into_iter().map(|body| (body.name.clone(), body.trajectory()));
+    let shown = |name: &str| visible(name).into_owned();
     Ok(FoundTrajectory {
         bodies: bodies.collect(),
         claims,
         counts_steps: table.counts_steps(),
-        unread: table.header.unread().map(|name| visible(name).into_owned()).collect(),
-        second_attitude: table
-            .header
-            .second_attitude()
-            .into_iter()
-            .map(|name| visible(name).into_owned())
-            .collect(),
+        unread: table.header.unread().map(shown).collect(),
+        second_attitude: table.header.second_attitude().into_iter().map(shown).collect(),
         contradicted_time,
         comments: table.comments,
         read_as,

@@ -1,6 +1,5 @@
 //! Newton's method on the face that holds the answer, and the certificate.
 
-use crate::thresholds::program::{INWARDS, NEAR, NEWTON, ROUNDED};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 
 use crate::physical::certificate::Certificate;
@@ -9,7 +8,7 @@ use crate::physical::coordinates::{Coordinates, eigen};
 use crate::physical::failure::SolverFailure;
 use crate::physical::law::LARGEST_SHARE;
 use crate::physical::program::{Program, Wall};
-use crate::thresholds::program::{CERTIFIED, STATIONARY};
+use crate::thresholds::program::{CERTIFIED, INWARDS, NEAR, NEWTON, ROUNDED, STATIONARY};
 
 /// The answer of the program.
 pub(crate) struct Nearest {

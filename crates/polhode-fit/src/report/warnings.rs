@@ -1,6 +1,5 @@
 //! Which warnings an estimate needs.
 
-use crate::solve::weak_estimate::Convergence;
 use crate::thresholds::noise::{DEVIATIONS, STATED};
 use crate::thresholds::poses::{DOUBTFUL, MOVING};
 use crate::thresholds::warnings::{APART, AS_WELL, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, UNEXPLAINED};
@@ -19,7 +18,7 @@ use crate::report::torque_free::{InvariantTrend, blow, memory};
 use crate::report::warning::Warning;
 use crate::settings::torque::TorqueModel;
 use crate::signal::filtered::Filtered;
-use crate::solve::weak_estimate::WeakEstimate;
+use crate::solve::weak_estimate::{Convergence, WeakEstimate};
 use crate::units::Others;
 
 /// Whether the record has wheel momenta or torques, and they are zero in all its samples.

@@ -1,6 +1,5 @@
 //! The weak estimate of a record: where its rounds ended.
 
-use crate::thresholds::noise::DEVIATIONS;
 use crate::thresholds::rounds::{BEYOND, RESTLESS, STILL};
 use crate::thresholds::stacked::ITERATIONS;
 use core::ops::Range;
@@ -16,7 +15,7 @@ use crate::solve::driven::Driven;
 use crate::solve::linearised::{Linearised, last_column, residuals};
 use crate::solve::rows::{Rows, rows};
 use crate::solve::stacked::Stacked;
-use crate::thresholds::noise::SURE;
+use crate::thresholds::noise::{DEVIATIONS, SURE};
 
 /// How near rounds ended to a fixed point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

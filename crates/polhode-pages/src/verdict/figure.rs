@@ -1,7 +1,6 @@
 //! The errors of a record against time, in four panels.
 
-use crate::figure::Drawing;
-use crate::figure::{Curve, Figure, Scale, sheet};
+use crate::figure::{Curve, Drawing, Figure, Scale, sheet};
 use polhode::audit::Traces;
 use polhode_files::error::Error;
 

@@ -6,10 +6,9 @@ use polhode::flow::{FreeMotion, LagrangeTop};
 use polhode::inertia::Inertia;
 use polhode::rotation::EulerSequence;
 use polhode_files::error::{Error, unexpected};
-use polhode_pages::figure::Drawing;
 use polhode_pages::figure::sphere::{View, circle};
 use polhode_pages::figure::style::{BLACK, BLUE, GREEN, GREY, NAME, ORANGE, TITLE};
-use polhode_pages::figure::{Anchor, Canvas};
+use polhode_pages::figure::{Anchor, Canvas, Drawing};
 
 type V = Vector3<f64>;
 
