@@ -327,7 +327,7 @@ impl Attitudes {
     }
 
     /// The rows with a figure of the errors.
-    fn _repr_html_(&self) -> PyResult<String> {
+    fn _repr_html_(&self) -> String {
         let mut figure =
             Figure::new("attitudes", "Errors", ("time (s)", Scale::Linear), ("angle (rad)", Scale::Log));
         figure.series.push(self.curve("all causes", |estimate| estimate.budget.sigma()));
@@ -335,10 +335,8 @@ impl Attitudes {
         figure.series.retain(|curve| !curve.points.is_empty());
         let svg = match figure.series.is_empty() {
             true => String::new(),
-            false => {
-                sheet("attitudes", &format!("Attitudes by {}", self.rule), 1, &[figure]).map_err(refused)?.svg
-            }
+            false => sheet("attitudes", &format!("Attitudes by {}", self.rule), 1, &[figure]).svg,
         };
-        Ok(shown::page(&self.__repr__(), &svg))
+        shown::page(&self.__repr__(), &svg)
     }
 }

@@ -9,7 +9,6 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::{array, matrix};
-use crate::error::refused;
 use crate::parts;
 use crate::shown;
 
@@ -469,7 +468,7 @@ impl Estimate {
     }
 
     /// The numbers with a figure of the residuals.
-    fn _repr_html_(&self) -> PyResult<String> {
+    fn _repr_html_(&self) -> String {
         let title = "Residuals of the fit";
         let axes = (("time (s)", Scale::Linear), ("standard deviations", Scale::Linear));
         let mut figure = Figure::new("residuals", title, axes.0, axes.1).scatter();
@@ -484,6 +483,6 @@ impl Estimate {
             };
             figure.series.push(Curve::new(name, self.found.residuals.iter().flat_map(of).collect()).dots());
         }
-        Ok(shown::page(&self.__repr__(), &figure.svg().map_err(refused)?))
+        shown::page(&self.__repr__(), &figure.svg())
     }
 }

@@ -9,7 +9,6 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Order, array, scipy_rotation};
 use crate::bodies::Body;
-use crate::error::refused;
 use crate::shown;
 
 /// A run at the times that were asked for: attitudes, angular velocities, and the largest errors up to each time.
@@ -185,7 +184,7 @@ impl Samples {
     }
 
     /// The rows with a figure of the errors.
-    fn _repr_html_(&self) -> PyResult<String> {
+    fn _repr_html_(&self) -> String {
         let rows = &self.rows;
         let all = [
             ("Energy", "relative error", &rows.errors[0]),
@@ -204,8 +203,8 @@ impl Samples {
             .collect();
         let svg = match panels.is_empty() {
             true => String::new(),
-            false => sheet("run", &format!("Errors of {}", self.method), 2, &panels).map_err(refused)?.svg,
+            false => sheet("run", &format!("Errors of {}", self.method), 2, &panels).svg,
         };
-        Ok(shown::page(&self.__repr__(), &svg))
+        shown::page(&self.__repr__(), &svg)
     }
 }

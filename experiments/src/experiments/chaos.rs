@@ -119,7 +119,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
             orbit.what
         );
         let name = if orbit.name == "tilted" { "chaos-tilted" } else { "chaos-upright" };
-        report.drawings.push(sheet(name, &title, 2, &panels)?);
+        report.drawings.push(sheet(name, &title, 2, &panels));
         let caption = format!("{}: {}.", orbit.name, orbit.what);
         report.views.push(table.view(
             format!("chaos-{}", orbit.name),

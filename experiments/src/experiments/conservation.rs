@@ -101,7 +101,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         "What each family of methods conserves over {counted} steps of 1/32 s, {BODY} body (moments 1, 2, 3): of each interval \
          of the time the change that is furthest from zero; order in brackets"
     );
-    let drawing = sheet("conservation", &title, 2, &panels)?;
+    let drawing = sheet("conservation", &title, 2, &panels);
     Ok(Report { tables: vec![series], views: vec![summary], drawings: vec![drawing], ..Report::default() })
 }
 

@@ -120,7 +120,7 @@ pub(super) fn write(
         staging.write(&format!("{}.tex", table.name), table.latex().as_bytes())?;
     }
     for figure in &report.figures {
-        staging.write(&format!("{}.svg", figure.name), figure.svg()?.as_bytes())?;
+        staging.write(&format!("{}.svg", figure.name), figure.svg().as_bytes())?;
     }
     for drawing in &report.drawings {
         staging.write(&format!("{}.svg", drawing.name), drawing.svg.as_bytes())?;

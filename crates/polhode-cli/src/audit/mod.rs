@@ -150,10 +150,10 @@ impl Audit {
         let report = self.report.as_deref().map(|path| Output::to_file("--report", path)).transpose()?;
         let output = Output::new(self.out.as_deref())?;
         if let Some(file) = figure {
-            file.write_whole(&verdict::panels(&name, &outcomes)?.svg)?;
+            file.write_whole(&verdict::panels(&name, &outcomes).svg)?;
         }
         if let Some((file, form)) = report.zip(form) {
-            file.write_whole(&verdict::page(&name, &outcomes, form)?)?;
+            file.write_whole(&verdict::page(&name, &outcomes, form))?;
         }
         output.write_whole(&text)?;
         if format == Format::Csv {

@@ -97,7 +97,7 @@ impl Gather {
             outputs.push(output);
             Ok::<_, Error>(())
         };
-        for (name, content) in results.files()? {
+        for (name, content) in results.files() {
             write(&name, &content)?;
             let sum = Checksum::of(content.as_bytes()).map_err(unexpected)?;
             sums.insert(name, sum);

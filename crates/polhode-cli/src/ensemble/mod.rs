@@ -207,7 +207,7 @@ impl Ensemble {
             .map_err(|error| Error::Input(format!("{}: {error}", self.out.display())))?;
         let record = Record::new(spec, None, shares.draws, shares.failures.len() as u64);
         let results = Results::new(&reduced, &shares, record);
-        let files = results.files()?;
+        let files = results.files();
         for (name, content) in &files {
             staging.write(name, content.as_bytes())?;
         }

@@ -58,12 +58,12 @@ impl Results {
     }
 
     /// Names and contents of what goes beside the arrays and the record.
-    pub(super) fn files(&self) -> Result<Vec<(String, String)>, Error> {
+    pub(super) fn files(&self) -> Vec<(String, String)> {
         let tables = [&self.summary].into_iter().chain(&self.tables);
         let mut files: Vec<(String, String)> =
             tables.map(|table| (format!("{}.csv", table.name), table.csv())).collect();
-        files.push((format!("{}.svg", self.figure.name), self.figure.svg()?));
-        Ok(files)
+        files.push((format!("{}.svg", self.figure.name), self.figure.svg()));
+        files
     }
 
     /// The record, with the checksums of all files beside it.

@@ -188,21 +188,10 @@ impl Fit {
             record = read.poses.inverse().rates();
         }
         let motion = if shown { estimate.fitted(&record) } else { Vec::new() };
-        let page = match page {
-            Some((file, form)) => Some((
-                file,
-                page::estimated(
-                    &estimate,
-                    &record,
-                    &motion,
-                    (&spans, read.as_ref(), &as_read),
-                    &self.names(),
-                    form,
-                )?,
-            )),
-            None => None,
-        };
         let sources = (&spans, read.as_ref(), &as_read);
+        let page = page.map(|(file, form)| {
+            (file, page::estimated(&estimate, &record, &motion, sources, &self.names(), form))
+        });
         output.write_whole(&report::identified(&estimate, &record, sources, format))?;
         if let Some(remark) = self.known.contradiction(&estimate)? {
             warn(&remark);

@@ -105,7 +105,7 @@ impl Fit {
         let (facts, failed) = refusal::facts(error);
         if let Some((file, form)) = page {
             let read = (record, as_read);
-            file.write_whole(&page::refused(&reason, facts.as_ref(), read, spans, &self.names(), form)?)?;
+            file.write_whole(&page::refused(&reason, facts.as_ref(), read, spans, &self.names(), form))?;
         }
         if let Some(facts) = facts {
             output.write_whole(&facts.report(record, spans, (as_read, &reason, method), format))?;

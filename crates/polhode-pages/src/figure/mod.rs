@@ -17,8 +17,6 @@ pub mod sphere;
 pub mod style;
 mod svg;
 
-use polhode_files::error::Error;
-
 pub use axis::{Scale, ten_to};
 pub use canvas::{Anchor, Canvas, Fill, Stroke};
 pub use latex::latex;
@@ -220,20 +218,14 @@ impl Figure {
     }
 
     /// The figure as SVG.
-    ///
-    /// # Errors
-    /// None: a figure of any points can be drawn.
-    pub fn svg(&self) -> Result<String, Error> {
-        Ok(self.page().svg())
+    pub fn svg(&self) -> String {
+        self.page().svg()
     }
 }
 
 /// Several figures as one, `columns` side by side, with `title` above them.
-///
-/// # Errors
-/// None: figures of any points can be drawn.
-pub fn sheet(name: &'static str, title: &str, columns: usize, panels: &[Figure]) -> Result<Drawing, Error> {
-    Ok(Drawing { name, svg: page_of(title, columns, panels).svg() })
+pub fn sheet(name: &'static str, title: &str, columns: usize, panels: &[Figure]) -> Drawing {
+    Drawing { name, svg: page_of(title, columns, panels).svg() }
 }
 
 /// The page of several figures, `columns` side by side, with `title` above them.
@@ -264,7 +256,7 @@ mod tests {
     #[test]
     fn each_curve_is_named_once_however_many_there_are() {
         for curves in [2, 5, 6, 24] {
-            let texts = texts(&figure(curves).svg().unwrap());
+            let texts = texts(&figure(curves).svg());
             for k in 0..curves {
                 let name = format!("curve-{k}");
                 assert_eq!(texts.iter().filter(|text| **text == name).count(), 1, "{curves}: {texts:?}");
@@ -274,7 +266,7 @@ mod tests {
 
     #[test]
     fn labels_beside_the_ends_of_curves_do_not_overlap() {
-        let svg = figure(24).svg().unwrap();
+        let svg = figure(24).svg();
         let document = roxmltree::Document::parse(&svg).unwrap();
         let names = document.descendants().filter(|n| n.text().is_some_and(|t| t.contains("curve-")));
         let mut heights: Vec<f64> =
@@ -305,7 +297,7 @@ mod tests {
         one.guide("slope 1", 1.0, (2.0, 1.0), [1.0, 4.0]);
         one.level("lost beyond 1 rad", 1.0);
         one.series.push(Curve::new("envelope", vec![(1.0, 2.0), (8.0, 3.0)]).wide());
-        let drawing = sheet("sheet", "Two panels", 2, &[one, figure(7)]).unwrap();
+        let drawing = sheet("sheet", "Two panels", 2, &[one, figure(7)]);
         let texts = texts(&drawing.svg);
         for name in ["slope 1", "lost beyond 1 rad", "envelope", "Two panels", "curve-6"] {
             assert!(texts.iter().any(|text| text == name), "{name}: {texts:?}");

@@ -2,7 +2,6 @@
 
 use crate::figure::{Curve, Drawing, Figure, Scale, sheet};
 use polhode::audit::Traces;
-use polhode_files::error::Error;
 
 use super::outcome::Outcome;
 
@@ -10,10 +9,7 @@ use super::outcome::Outcome;
 type Values = fn(&Traces) -> &[f64];
 
 /// Energy, |m|, direction of L and attitude, on logarithmic axes for both signs; what the record does not tell is left out.
-///
-/// # Errors
-/// A figure that cannot be drawn.
-pub fn panels(name: &str, outcomes: &[Outcome]) -> Result<Drawing, Error> {
+pub fn panels(name: &str, outcomes: &[Outcome]) -> Drawing {
     let panels: [(&str, &str, Values); 4] = [
         ("Energy", "relative change", |traces| &traces.energy),
         ("|m|", "relative change", |traces| &traces.momentum_norm),

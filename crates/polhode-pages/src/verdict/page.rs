@@ -2,7 +2,6 @@
 
 use crate::document::{Block, Form, Tone};
 use polhode::audit::Judgement;
-use polhode_files::error::Error;
 use polhode_files::text::short;
 
 use super::figure::panels;
@@ -10,10 +9,7 @@ use super::outcome::{Outcome, named, sentence};
 use super::text::{attitude, causes};
 
 /// The page of the record `name`.
-///
-/// # Errors
-/// A figure that cannot be drawn.
-pub fn page(name: &str, outcomes: &[Outcome], form: Form) -> Result<String, Error> {
+pub fn page(name: &str, outcomes: &[Outcome], form: Form) -> String {
     let mut parts = Vec::new();
     for outcome in outcomes {
         if let Some(body) = &outcome.body {
@@ -24,8 +20,8 @@ pub fn page(name: &str, outcomes: &[Outcome], form: Form) -> Result<String, Erro
     parts.push(Block::Heading("Errors against time".into()));
     let caption = "Energy and |m| as relative changes from the first row, the angle of L in space from its first direction, and \
                    the angle of the attitude from the motion; the axes are logarithmic, with positive values above the middle and negative ones below.";
-    parts.push(Block::Figure(panels(name, outcomes)?.svg, caption.into()));
-    Ok(form.write(&format!("Audit of {name}"), &parts))
+    parts.push(Block::Figure(panels(name, outcomes).svg, caption.into()));
+    form.write(&format!("Audit of {name}"), &parts)
 }
 
 fn one(outcome: &Outcome) -> Vec<Block> {

@@ -137,7 +137,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
     }
     let title = "Shift along the polhode and twist about L, textbook body (moments 1, 2, 3), methods of order 2 with steps of \
                  0.01 s; dotted: predicted";
-    report.drawings.push(sheet("phase", title, 1, &[shifts, twists])?);
+    report.drawings.push(sheet("phase", title, 1, &[shifts, twists]));
     report.tables.push(table);
     bodies::add(context, &mut report)?;
     corrected::add(context, &mut report)?;

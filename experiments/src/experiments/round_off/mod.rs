@@ -142,7 +142,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
         "Rounding errors in f64 against steps, root mean square of {bodies}; bars: 95 %; compensated: what rounding takes is \
          carried to the next sum"
     );
-    let drawing = sheet("round-off", &title, 1, &panels)?;
+    let drawing = sheet("round-off", &title, 1, &panels);
     let views = vec![growth.clone()];
     Ok(Report {
         tables: vec![errors, growth],

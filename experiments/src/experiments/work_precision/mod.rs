@@ -77,7 +77,7 @@ pub(crate) fn run(context: &Context) -> Result<Report, Error> {
                 "{what}: largest attitude error up to the end against cost, medians over the starts, bars from 10 to 90 %; wide: \
                  the least of all but exact-step"
             );
-            report.drawings.push(sheet(name, &title, 2, &panels)?);
+            report.drawings.push(sheet(name, &title, 2, &panels));
         }
     }
     let costs = costs(&contests);

@@ -74,7 +74,7 @@ impl Page {
             self.failures.push(format!("<a href=\"#{name}\">{name}</a>: {failure}"));
         }
         for figure in &report.figures {
-            self.figure(&figure.title, &figure.svg()?);
+            self.figure(&figure.title, &figure.svg());
         }
         for drawing in &report.drawings {
             self.figure("", &drawing.svg);

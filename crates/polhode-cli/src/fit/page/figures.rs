@@ -1,7 +1,6 @@
 //! The drawings of a page.
 
 use nalgebra::Vector3;
-use polhode_files::error::Error;
 use polhode_fit::{Estimate, FittedMotion, Record};
 use polhode_pages::document::Block;
 use polhode_pages::figure::{Canvas, Curve, Figure, page_of};
@@ -17,11 +16,7 @@ const SMALL: f64 = 260.0;
 
 /// Measured and fitted rates of each segment, or of those that fit worst.
 /// `differenced` says that the rates are those of attitudes, which nobody has measured.
-pub(super) fn motions(
-    motion: &[FittedMotion],
-    record: &Record,
-    differenced: bool,
-) -> Result<Vec<Block>, Error> {
+pub(super) fn motions(motion: &[FittedMotion], record: &Record, differenced: bool) -> Vec<Block> {
     let mut chosen: Vec<&FittedMotion> = motion.iter().collect();
     worst_first(&mut chosen);
     let heading = if differenced {
@@ -38,9 +33,9 @@ pub(super) fn motions(
         parts.push(Block::Paragraph(format!("The {DRAWN} segments of {} that fit worst.", motion.len())));
     }
     for (figure, caption) in chosen.into_iter().filter_map(|m| followed(m, record)) {
-        parts.push(Block::Figure(figure.svg()?, caption));
+        parts.push(Block::Figure(figure.svg(), caption));
     }
-    Ok(parts)
+    parts
 }
 
 /// Measured and fitted rates of a segment, with a caption.
@@ -90,19 +85,19 @@ fn rates(times: &[f64], rates: &[Vector3<f64>], named: bool) -> Vec<Curve> {
 }
 
 /// Residuals: whitened against time, their spectrum and their Allan deviation.
-pub(super) fn residuals(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Result<Vec<Block>, Error> {
+pub(super) fn residuals(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Vec<Block> {
     let mut parts = vec![Block::Heading("Residuals".into())];
     let caption = format!(
         "Residuals of {} in standard deviations; the band is two of them wide on each side.",
         plot::what(e)
     );
-    parts.push(Block::Figure(plot::residuals(e).svg()?, caption));
+    parts.push(Block::Figure(plot::residuals(e).svg(), caption));
     if e.attitudes.is_some() {
-        return Ok(parts);
+        return parts;
     }
     let left: Vec<_> = motion.iter().filter_map(FittedMotion::residuals).collect();
     let times = motion.iter().filter_map(|m| record.segments.get(m.segment)).map(|s| s.times());
-    let Some(interval) = interval(times).filter(|_| !left.is_empty()) else { return Ok(parts) };
+    let Some(interval) = interval(times).filter(|_| !left.is_empty()) else { return parts };
     let spectrum = noise::spectrum(&left, interval);
     if let (Some(first), Some(last)) = (spectrum.first(), spectrum.last()) {
         let level = 2.0 * e.noise_sigma * e.noise_sigma * interval;
@@ -115,7 +110,7 @@ pub(super) fn residuals(e: &Estimate, motion: &[FittedMotion], record: &Record) 
              white noise of {:.2e} rad/s.",
             e.noise_sigma
         );
-        parts.push(Block::Figure(figure.svg()?, caption));
+        parts.push(Block::Figure(figure.svg(), caption));
     }
     let allan = noise::allan(&left, interval);
     if let (Some(first), Some(last)) = (allan.first(), allan.last()) {
@@ -131,9 +126,9 @@ pub(super) fn residuals(e: &Estimate, motion: &[FittedMotion], record: &Record) 
             "Allan deviation of the same, mean of the axes, with white noise of {:.2e} rad/s.",
             e.noise_sigma
         );
-        parts.push(Block::Figure(figure.svg()?, caption));
+        parts.push(Block::Figure(figure.svg(), caption));
     }
-    Ok(parts)
+    parts
 }
 
 /// The median time between samples.
@@ -145,10 +140,10 @@ fn interval<'a>(segments: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
 }
 
 /// |J ω| and ω·J ω of the samples over their means.
-pub(super) fn invariants(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Result<Block, Error> {
+pub(super) fn invariants(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Block {
     let caption =
         "Angular momentum |Jω| and twice the energy, 2T = ω·Jω, which are constant for a free body.";
-    Ok(Block::Figure(kept(e, motion, record).svg()?, caption.into()))
+    Block::Figure(kept(e, motion, record).svg(), caption.into())
 }
 
 fn kept(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Figure {
@@ -178,13 +173,13 @@ fn kept(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Figure {
 }
 
 /// The readings of a record that was refused.
-pub(super) fn readings(record: &Record) -> Result<Vec<Block>, Error> {
+pub(super) fn readings(record: &Record) -> Vec<Block> {
     let shown = record.segments.iter().enumerate().take(DRAWN);
     let mut parts = Vec::new();
     for (k, s) in shown {
         let mut figure = over_time(format!("Segment {}", k + 1), "angular velocity (rad/s)", true, SMALL);
         figure.series = rates(s.times(), s.rates(), true).into_iter().map(Curve::dots).collect();
-        parts.push(Block::Figure(figure.svg()?, format!("Segment {} of {}.", k + 1, s.source())));
+        parts.push(Block::Figure(figure.svg(), format!("Segment {} of {}.", k + 1, s.source())));
     }
     if record.segments.len() > DRAWN {
         parts.push(Block::Paragraph(format!("The first {DRAWN} segments of {}.", record.segments.len())));
@@ -200,8 +195,8 @@ pub(super) fn readings(record: &Record) -> Result<Vec<Block>, Error> {
     let mut figure = over_time("Size of the rate along the record", "|ω| (rad/s)", single, SMALL);
     figure.series = vec![Curve::new("|ω|", points).dots()];
     parts.push(Block::Figure(
-        figure.svg()?,
+        figure.svg(),
         "Size of the rate: jumps are blows or catches, a slow decrease is drag.".into(),
     ));
-    Ok(parts)
+    parts
 }

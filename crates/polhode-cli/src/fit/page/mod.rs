@@ -3,7 +3,6 @@
 pub(super) mod figures;
 mod noise;
 
-use polhode_files::error::Error;
 use polhode_fit::{Estimate, FittedMotion, Nuisance, Record};
 use polhode_pages::document::{Block, Form, Tone};
 
@@ -23,7 +22,7 @@ pub(super) fn estimated(
     (spans, read, as_read): Sources<'_>,
     names: &str,
     form: Form,
-) -> Result<String, Error> {
+) -> String {
     let mut parts = answer(e, as_read);
     let sentences = attitudes::sentences(e, read);
     if !sentences.is_empty() {
@@ -41,15 +40,15 @@ pub(super) fn estimated(
     parts.extend(sensor(e));
     parts.push(Block::Heading("Segments".into()));
     parts.extend(segments(e, record, motion));
-    parts.extend(figures::motions(motion, record, read.is_some_and(|read| !read.poses.has_rates()))?);
-    parts.extend(figures::residuals(e, motion, record)?);
-    parts.push(figures::invariants(e, motion, record)?);
+    parts.extend(figures::motions(motion, record, read.is_some_and(|read| !read.poses.has_rates())));
+    parts.extend(figures::residuals(e, motion, record));
+    parts.push(figures::invariants(e, motion, record));
     parts.extend(spikes(e, record));
     let columns = unused(record);
     if !columns.is_empty() {
         parts.push(Block::Paragraph(format!("Columns not used: {}.", columns.join(", "))));
     }
-    Ok(form.write(&format!("Inertia from {names}"), &parts))
+    form.write(&format!("Inertia from {names}"), &parts)
 }
 
 /// The page of a refusal.
@@ -60,7 +59,7 @@ pub(super) fn refused(
     spans: &Spans,
     names: &str,
     form: Form,
-) -> Result<String, Error> {
+) -> String {
     // what is open stands below
     let why = match facts.and_then(|facts| facts.rank) {
         Some(rank) => format!("the record determines {rank} of its 5 numbers"),
@@ -79,8 +78,8 @@ pub(super) fn refused(
     parts.extend(read(as_read));
     parts.extend(spans.parts());
     parts.push(Block::Heading("Readings".into()));
-    parts.extend(figures::readings(record)?);
-    Ok(form.write(&format!("No inertia from {names}"), &parts))
+    parts.extend(figures::readings(record));
+    form.write(&format!("No inertia from {names}"), &parts)
 }
 
 /// How the files were read.
