@@ -6,9 +6,6 @@ use super::marks::mark;
 use super::style::{BLACK, CURVE, Colour, DOTTED, GREY, LINE, NAME, NAMES, WIDE};
 use super::{Curve, Figure, Guide, Look, font};
 
-/// Length of a line in a legend.
-const SAMPLE: f64 = 28.0;
-
 /// What a line of a legend shows.
 pub(super) enum Entry<'a> {
     Curve(usize, &'a Curve),
@@ -57,9 +54,11 @@ impl Figure {
         let mut rows: Vec<Vec<Entry<'_>>> = Vec::new();
         let mut used = f64::INFINITY;
         for entry in entries {
-            let width = entry.width();
+            // with the mark before the label and the gap behind it
+            let width = font::width(entry.label(), NAME) + 42.0;
             if used + width > self.width() - 20.0 {
-                (used, rows) = (0.0, rows.into_iter().chain([Vec::new()]).collect());
+                used = 0.0;
+                rows.push(Vec::new());
             }
             used += width;
             if let Some(row) = rows.last_mut() {
@@ -106,20 +105,13 @@ impl Figure {
         for (n, row) in self.legend().into_iter().enumerate() {
             let (mut x, y) = (left.min(40.0), first + LINE * n as f64);
             for entry in row {
-                let text = match entry {
-                    Entry::Curve(k, series) => {
-                        mark(page, k, [x + 8.0, y - 4.0], series.colour(k), 1.0);
-                        x += 20.0;
-                        &series.name
-                    }
-                    Entry::Events(label) => {
-                        arrow_down(page, [x + 8.0, y - 0.5]);
-                        x += 20.0;
-                        label
-                    }
-                };
-                page.text([x, y], text, NAME, Anchor::Start, BLACK);
-                x += font::width(text, NAME) + 22.0;
+                match entry {
+                    Entry::Curve(k, series) => mark(page, k, [x + 8.0, y - 4.0], series.colour(k), 1.0),
+                    Entry::Events(_) => arrow_down(page, [x + 8.0, y - 0.5]),
+                }
+                x += 20.0;
+                page.text([x, y], entry.label(), NAME, Anchor::Start, BLACK);
+                x += font::width(entry.label(), NAME) + 22.0;
             }
         }
     }
@@ -141,10 +133,10 @@ impl Figure {
 }
 
 impl Entry<'_> {
-    fn width(&self) -> f64 {
+    fn label(&self) -> &str {
         match self {
-            Entry::Curve(_, series) => font::width(&series.name, NAME) + 42.0,
-            Entry::Events(label) => font::width(label, NAME) + SAMPLE + 14.0,
+            Entry::Curve(_, series) => &series.name,
+            Entry::Events(label) => label,
         }
     }
 }
