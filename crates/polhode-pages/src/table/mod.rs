@@ -227,17 +227,13 @@ impl Table {
 
     /// Header row, then every row in full precision.
     pub fn csv(&self) -> String {
-        self.csv_head() + &self.rows.iter().map(|row| self.csv_row(row)).collect::<String>()
+        let mut text = self.csv_head();
+        self.rows.iter().for_each(|row| write_row(row, self.columns.len(), &mut text));
+        text
     }
 
     fn csv_head(&self) -> String {
         self.columns.iter().map(|column| quoted(&column.name)).collect::<Vec<_>>().join(",") + "\n"
-    }
-
-    fn csv_row(&self, row: &[Cell]) -> String {
-        let mut line = String::new();
-        write_row(row.iter().cloned(), self.columns.len(), &mut line);
-        line
     }
 
     /// An array of objects, a row a line; an empty cell is null.
@@ -278,14 +274,14 @@ fn is_plain(x: f64) -> bool {
 }
 
 /// Adds a line of CSV with `count` fields, the last of them empty where `row` is short.
-fn write_row(row: impl IntoIterator<Item = Cell>, count: usize, line: &mut String) {
+fn write_row<C: Borrow<Cell>>(row: impl IntoIterator<Item = C>, count: usize, line: &mut String) {
     let mut row = row.into_iter();
     for k in 0..count {
         if k > 0 {
             line.push(',');
         }
         if let Some(cell) = row.next() {
-            cell.write_field(line);
+            cell.borrow().write_field(line);
         }
     }
     line.push('\n');

@@ -1,6 +1,6 @@
 //! Verdicts in words, for a terminal.
 
-use crate::table::{Cell, Column, Table, row, to_digits};
+use crate::table::{Column, Table, row, to_digits};
 use polhode::audit::{Signature, Verdict};
 
 use super::advice;
@@ -178,18 +178,17 @@ pub fn rows(outcomes: &[Outcome]) -> Table {
     for outcome in outcomes {
         let verdict = &outcome.verdict;
         let reading = &verdict.reading;
-        let text = |value: Option<String>| Cell::from(value);
         table.push(row![
             outcome.body.clone(),
             outcome.rows as u64,
             outcome.judgement(),
             outcome.suspect(),
-            text(reading.quaternion.map(|order| order.to_string())),
-            text(reading.attitude.map(|direction| direction.to_string())),
-            text(reading.angles.map(|angles| angles.sequence.to_string())),
-            text(reading.omega_frame.map(|frame| frame.to_string())),
-            text(reading.rate_unit.map(|unit| unit.to_string())),
-            text(reading.momentum_frame.map(|frame| frame.to_string())),
+            reading.quaternion.map(|order| order.to_string()),
+            reading.attitude.map(|direction| direction.to_string()),
+            reading.angles.map(|angles| angles.sequence.to_string()),
+            reading.omega_frame.map(|frame| frame.to_string()),
+            reading.rate_unit.map(|unit| unit.to_string()),
+            reading.momentum_frame.map(|frame| frame.to_string()),
             verdict.tie.as_ref().map_or(0, |tie| tie.readings.len()) as u64,
             outcome.error(|quantity| *quantity == polhode::body::Conserved::Energy),
             outcome.error(|quantity| *quantity == polhode::body::Conserved::MomentumNorm),
