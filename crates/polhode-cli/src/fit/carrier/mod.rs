@@ -8,7 +8,7 @@ use std::path::PathBuf;
 
 use nalgebra::Vector3;
 use polhode_files::error::{Error, warn};
-use polhode_fit::{Attached, CarrierError, CarrierRecords, FitError, Settings, fit_carrier};
+use polhode_fit::{Attached, CarrierError, CarrierRecords, Settings, fit_carrier};
 use polhode_pages::document::Form;
 use polhode_pages::output::Output;
 use polhode_pages::table::Format;
@@ -152,10 +152,7 @@ fn is_failure(error: &CarrierError) -> bool {
 /// A refusal in words, with the flags that help.
 fn reason(error: &CarrierError) -> String {
     match error {
-        CarrierError::Record { attached, error } => {
-            let of: &FitError = error;
-            format!("{attached}: {}", refusal::reason(of))
-        }
+        CarrierError::Record { attached, error } => format!("{attached}: {}", refusal::reason(error)),
         CarrierError::NoSize { .. } => {
             format!("{error} (--proof, --wheel, columns hx, hy, hz or tx, ty, tz)")
         }

@@ -148,17 +148,16 @@ pub(super) fn invariants(e: &Estimate, motion: &[FittedMotion], record: &Record)
 
 fn kept(e: &Estimate, motion: &[FittedMotion], record: &Record) -> Figure {
     let j = e.shape.tensor();
-    let segments: Vec<&FittedMotion> = motion.iter().collect();
     let source = |m: &FittedMotion| record.segments.get(m.segment).map_or(&[][..], |s| s.times());
-    let single = segments.len() == 1;
+    let single = motion.len() == 1;
     let times: Vec<Vec<f64>> = if single {
-        segments.iter().map(|m| source(m).to_vec()).collect()
+        motion.iter().map(|m| source(m).to_vec()).collect()
     } else {
-        without_gaps(segments.iter().map(|m| source(m)))
+        without_gaps(motion.iter().map(source))
     };
     let curve = |name: &str, of: &dyn Fn(&Vector3<f64>) -> f64| {
         let mut points = Vec::new();
-        for (m, times) in segments.iter().zip(&times) {
+        for (m, times) in motion.iter().zip(&times) {
             let used = || m.measured.iter().zip(times).zip(&m.used).filter(|(_, used)| **used);
             let count = used().count().max(1) as f64;
             let mean = used().map(|((w, _), _)| of(w)).sum::<f64>() / count;
