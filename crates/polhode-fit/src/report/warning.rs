@@ -297,18 +297,18 @@ impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Merged { samples } => {
-                write!(f, "{} merged with the sample of the same time", counted(*samples, "was", "were"))
+                write!(f, "{} merged with the sample of the same time", counted(*samples))
             }
             Self::Repeated { samples, rate } => write!(
                 f,
                 "{} left out as repeated readings: the log is written faster than the sensor reads; new readings come at {} Hz",
-                counted(*samples, "was", "were"),
+                counted(*samples),
                 four_digits(*rate)
             ),
             Self::Stale { samples } => write!(
                 f,
                 "{} left out as repeating the reading before: the sensor or its log stalled there",
-                counted(*samples, "was", "were")
+                counted(*samples)
             ),
             Self::Saturated { samples } => {
                 let (subject, verb) = if *samples == 1 { ("sample", "was") } else { ("samples", "were") };
@@ -317,7 +317,7 @@ impl fmt::Display for Warning {
             Self::Spikes { samples, line } => write!(
                 f,
                 "{} left out as far from what the neighbouring samples predict (spikes); the first is in line {line}",
-                counted(*samples, "was", "were")
+                counted(*samples)
             ),
             Self::Bursts { samples, bursts, line } => {
                 let plural = if *bursts == 1 { "burst" } else { "bursts" };
@@ -325,7 +325,7 @@ impl fmt::Display for Warning {
                     f,
                     "{} left out in {bursts} {plural} of consecutive samples, far from those before and after, which agree with each \
                      other; the first is in line {line}",
-                    counted(*samples, "was", "were")
+                    counted(*samples)
                 )
             }
             Self::TorqueNoise { density, unexplained } => {
@@ -513,12 +513,12 @@ impl fmt::Display for Warning {
                 "moments {low} and {high} agree within their standard deviations: the directions of their axes are undetermined"
             ),
             Self::RepeatedAttitudes { samples } => {
-                write!(f, "{} left out as repeating the attitude before", counted(*samples, "was", "were"))
+                write!(f, "{} left out as repeating the attitude before", counted(*samples))
             }
             Self::Outliers { samples } => write!(
                 f,
                 "{} left out as far from the fitted motion, in attitude or rate",
-                counted(*samples, "was", "were")
+                counted(*samples)
             ),
             Self::CoarseAttitudes { turn } => write!(
                 f,
@@ -609,6 +609,6 @@ fn four_digits(x: f64) -> Shown {
 }
 
 /// "1 sample was", "2 samples were".
-fn counted(count: usize, one: &str, more: &str) -> String {
-    if count == 1 { format!("1 sample {one}") } else { format!("{count} samples {more}") }
+fn counted(count: usize) -> String {
+    if count == 1 { "1 sample was".into() } else { format!("{count} samples were") }
 }

@@ -8,7 +8,7 @@ use crate::physical::coordinates::Coordinates;
 use crate::signal::covariance::{Covariance, Levels};
 use crate::signal::stretch::Stretch;
 use crate::signal::test_functions::TestFunctions;
-use crate::solve::levels::{Choice, likeliest};
+use crate::solve::levels::likeliest;
 use crate::solve::linearised::{Linearised, Whitened};
 use crate::solve::radius::candidates;
 use crate::solve::rounds::Noise;
@@ -92,8 +92,7 @@ fn at(
             // what noise of the rates does not explain is torque noise
             fitted = true;
             for ((part, covariance), levels) in parts.iter().zip(&covariances).zip(&mut levels) {
-                let choice = Choice { white: several };
-                *levels = likeliest(covariance, &part.residuals(&next), variance, 1.0, choice, None)?;
+                *levels = likeliest(covariance, &part.residuals(&next), variance, 1.0, several, None)?;
             }
         } else if moved <= STILL {
             let levels = used.iter().zip(&levels).map(|((k, ..), levels)| (*k, *levels)).collect();

@@ -13,7 +13,7 @@ use crate::physical::nearest::nearest;
 use crate::settings::torque::TorqueModel;
 use crate::signal::stretch::Stretch;
 use crate::solve::joint::Joint;
-use crate::solve::levels::{Choice, likeliest};
+use crate::solve::levels::likeliest;
 use crate::solve::radius::{Ends, Failure, descended, estimate, is_long};
 use crate::solve::rounds::{Noise, Reached};
 use crate::solve::weak_estimate::{Convergence, WeakEstimate};
@@ -333,9 +333,8 @@ fn loss_by_law(weak: &WeakEstimate, variance: f64) -> f64 {
 /// Whether the residuals of an estimate without torque noise ask for some.
 fn has_torque_noise(stretches: &[Stretch], weak: &WeakEstimate, variance: f64) -> bool {
     let free = weak.dof().max(1) as f64 / weak.rows.max(1) as f64;
-    let choice = Choice { white: false };
     weak.parts.iter().any(|part| {
-        likeliest(&part.covariance(&stretches[part.stretch]), &part.left, variance, free, choice, None)
+        likeliest(&part.covariance(&stretches[part.stretch]), &part.left, variance, free, false, None)
             .is_some_and(|levels| levels.torque > 0.0)
     })
 }

@@ -7,24 +7,18 @@ use crate::signal::covariance::{Covariance, Levels, Shape};
 use crate::thresholds::levels::{BETWEEN, DECADES, FIRST_DECADE, GAIN, RESHAPED, SECTIONS, STEP};
 use crate::thresholds::rounds::BESIDE;
 
-/// What may be fitted of the noise of a stretch.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Choice {
-    /// Whether the noise of the rates may differ from that of the record.
-    pub(crate) white: bool,
-}
-
 /// The likeliest levels for residuals `e` (not whitened) of variance `variance`; `free` is the share of the residuals
-/// that the estimate has not fitted away, `last` what the search begins at.
+/// that the estimate has not fitted away, `white` whether the noise of the rates may differ from that of the record, `last` what the
+/// search begins at.
 pub(crate) fn likeliest(
     part: &Covariance,
     e: &[f64],
     variance: f64,
     free: f64,
-    choice: Choice,
+    white: bool,
     last: Option<Levels>,
 ) -> Option<Levels> {
-    let search = |shape| Search { part, e, variance, free, white: choice.white, shape };
+    let search = |shape| Search { part, e, variance, free, white, shape };
     let near = last.filter(|last| last.torque > 0.0);
     // the shape of before first
     let first = near.map_or(Shape::Moments, |last| last.shape);
@@ -278,7 +272,6 @@ mod tests {
         let (part, variance) = (covariance(), 0.04);
         let mut random = Random::new(23);
         let size = 339;
-        let choice = Choice { white: false };
         for shape in [Shape::Moments, Shape::Alike] {
             let search = |e| Search { part: &part, e, variance, free: 1.0, white: false, shape };
             let unit = search(&[]).unit();
@@ -287,17 +280,17 @@ mod tests {
             let z: Vec<f64> = (0..size).map(|_| 0.2 * random.normal()).collect();
             let e = (0..size).map(|i| (0..=i).map(|k| factor.get(i, k) * z[k]).sum::<f64>());
             let e: Vec<f64> = e.collect();
-            let found = likeliest(&part, &e, variance, 1.0, choice, None).unwrap();
+            let found = likeliest(&part, &e, variance, 1.0, false, None).unwrap();
             let ratio = found.torque / levels.torque;
             assert!(found.white == 1.0 && (1.0 / 3.0..3.0).contains(&ratio), "{shape:?}: {ratio}");
             let cost = |torque: f64| Search { shape: found.shape, ..search(&e) }.at(torque).unwrap().cost;
             let least = cost(found.torque);
             assert!(least < cost(2.0 * found.torque) && least < cost(0.5 * found.torque), "{shape:?}");
-            let next = likeliest(&part, &e, variance, 1.0, choice, Some(found)).unwrap();
+            let next = likeliest(&part, &e, variance, 1.0, false, Some(found)).unwrap();
             assert_eq!(next.shape, found.shape);
             assert!(libm::log10(next.torque / found.torque).abs() < 0.1, "{shape:?}: {found:?} {next:?}");
         }
-        let none = likeliest(&part, &vec![0.0; size], variance, 1.0, choice, None);
+        let none = likeliest(&part, &vec![0.0; size], variance, 1.0, false, None);
         assert_eq!(none, Some(Levels::WHITE));
     }
 }

@@ -13,7 +13,7 @@ use crate::physical::coordinates::{Coordinates, Form, eigen, tensor};
 use crate::signal::covariance::{Covariance, Levels};
 use crate::signal::stretch::Stretch;
 use crate::signal::test_functions::TestFunctions;
-use crate::solve::levels::{Choice, likeliest};
+use crate::solve::levels::likeliest;
 use crate::solve::linearised::{Linearised, Whitened};
 use crate::solve::stacked::{Pull, Stacked};
 use crate::solve::weak_estimate::{Part, WeakEstimate};
@@ -308,8 +308,8 @@ impl<'a> Rounds<'a> {
                 Noise::White => Some(Levels::WHITE),
                 Noise::Given(torque) => Some(Levels { torque, ..Levels::WHITE }),
                 Noise::Fitted => {
-                    let (choice, last) = (Choice { white: several }, (!is_first).then_some(*levels));
-                    likeliest(covariance, &part.residuals(&next), variance, fitted, choice, last)
+                    let last = (!is_first).then_some(*levels);
+                    likeliest(covariance, &part.residuals(&next), variance, fitted, several, last)
                 }
             };
             let targets;

@@ -42,14 +42,15 @@ impl FreeBody {
     /// The best of those that least squares reach from J by linear equations, and from the sphere.
     pub(super) fn nearest(gram: &Gram, factor: f64) -> Option<FreeBody> {
         let starts = [linear(gram, factor), Some(Matrix3::identity() / 3.0)];
-        let bodies = starts.into_iter().flatten().filter_map(|j| FreeBody::at(&j)?.descended(gram, factor));
+        let bodies =
+            starts.into_iter().flatten().filter_map(|j| FreeBody::known(&j)?.descended(gram, factor));
         bodies.min_by(|a, b| a.squares.total_cmp(&b.squares))
     }
 
     /// The same from this body on.
     pub(super) fn descended(mut self, gram: &Gram, factor: f64) -> Option<FreeBody> {
         let mut damping = 1e-3;
-        self.squares = inner(&self.coefficients(factor)?, &self.coefficients(factor)?, gram);
+        self.squares = self.squares_by(gram, factor)?;
         for _ in 0..STEPS {
             let own = self.coefficients(factor)? * gram;
             let slopes = self.slopes(factor)?;
@@ -80,7 +81,11 @@ impl FreeBody {
 
     /// A known body that nothing but its motion drives.
     pub(super) fn known(j: &Matrix3<f64>) -> Option<FreeBody> {
-        FreeBody::at(j)
+        let sigma = Matrix3::from_diagonal_element(0.5 * j.trace()) - j;
+        let (values, axes) = eigen(sigma);
+        let values = values.map(|value| value.max(SMALLEST * j.trace()));
+        let root = (axes * Matrix3::from_diagonal(&values) * axes.transpose()).cholesky()?.l();
+        Some(FreeBody { root, drag: 0.0, constant: [0.0; 3], squares: f64::INFINITY })
     }
 
     /// What it leaves by other weights.
@@ -91,14 +96,6 @@ impl FreeBody {
 
     fn tensor(&self) -> Matrix3<f64> {
         turned(&(self.root * self.root.transpose()))
-    }
-
-    fn at(j: &Matrix3<f64>) -> Option<FreeBody> {
-        let sigma = Matrix3::from_diagonal_element(0.5 * j.trace()) - j;
-        let (values, axes) = eigen(sigma);
-        let values = values.map(|value| value.max(SMALLEST * j.trace()));
-        let root = (axes * Matrix3::from_diagonal(&values) * axes.transpose()).cholesky()?.l();
-        Some(FreeBody { root, drag: 0.0, constant: [0.0; 3], squares: f64::INFINITY })
     }
 
     fn coefficients(&self, factor: f64) -> Option<Coefficients> {
