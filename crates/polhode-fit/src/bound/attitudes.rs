@@ -4,12 +4,12 @@ use nalgebra::{SMatrix, Vector3};
 use polhode::inertia::Inertia;
 use polhode::rotation::Quat;
 
+use crate::bound::of_entries;
 use crate::likelihood::descent::{Levels, Problem};
 use crate::likelihood::motion::Start;
 use crate::likelihood::sums::Reduced;
 use crate::likelihood::track::{Model, Track};
-use crate::physical::coordinates::{coordinates, eigen, entries_of_coordinates};
-use crate::thresholds::bound::OPEN;
+use crate::physical::coordinates::coordinates;
 
 /// The Cramér–Rao bound on the tensor with trace 1 of a body that is known, from attitudes of its free motion: covariance of the entries
 /// xx, yy, zz, xy, xz, yz in body axes.
@@ -61,12 +61,6 @@ pub fn foreseen_attitude_bound(
     let levels = Levels { attitude: 1e3, rate: 1.0 };
     let problem = Problem { tracks: &[track], levels, radius: f64::INFINITY, pull: None };
     let information = Reduced::new(&problem.sums(&model)?.0)?.of_tensor()?;
-    let (spectrum, _) = eigen(information);
-    if spectrum[0].is_nan() || spectrum[0] <= OPEN * spectrum[4] {
-        return None;
-    }
     let deviation = sigma / levels.attitude;
-    let bound = information.cholesky()?.inverse() * (deviation * deviation);
-    let entries = entries_of_coordinates();
-    Some(entries * bound * entries.transpose()).filter(|b| b.iter().all(|v| v.is_finite()))
+    of_entries(information, |own| Some(own.cholesky()?.inverse() * (deviation * deviation)))
 }

@@ -1,12 +1,12 @@
 //! The Cramér–Rao bound of measured motions, and of a planned one.
 
-use crate::thresholds::bound::OPEN;
 use nalgebra::{Matrix3, SMatrix, Vector3};
 use polhode::inertia::Inertia;
 
 use crate::bound::nearest_motion::nearest_motion;
+use crate::bound::of_entries;
 use crate::bound::sensitivity::{Euler, Sensitivity, Start, of_tensor};
-use crate::physical::coordinates::{Coordinates, Form, eigen, entries_of_coordinates, tensor};
+use crate::physical::coordinates::{Coordinates, Form, tensor};
 use crate::signal::stretch::Stretch;
 
 /// The motions of a given tensor that explain a record.
@@ -96,12 +96,5 @@ pub fn foreseen_bound(
     let start = Start { time: times.first().copied()?, rate: omega_body / rate };
     let deviation = sigma / rate;
     let information = of_tensor(&euler.information(&times, &start))?;
-    let (spectrum, _) = eigen(information);
-    // what a pure spin leaves open is zero up to the rounding of sums of squares
-    if spectrum[0].is_nan() || spectrum[0] <= OPEN * spectrum[4] {
-        return None;
-    }
-    let bound = (information / (deviation * deviation)).cholesky()?.inverse();
-    let entries = entries_of_coordinates();
-    Some(entries * bound * entries.transpose()).filter(|b| b.iter().all(|v| v.is_finite()))
+    of_entries(information, |own| Some((own / (deviation * deviation)).cholesky()?.inverse()))
 }

@@ -1,12 +1,13 @@
 //! The Cramér–Rao bound of a record that is planned, with torques and errors of the sensor among the unknowns.
 
-use crate::thresholds::bound::{OPEN, PARTS_OF_PLAN, STEP_OF_PLAN};
+use crate::thresholds::bound::{PARTS_OF_PLAN, STEP_OF_PLAN};
 use nalgebra::{DMatrix, Matrix3, Matrix3xX, SMatrix, Vector3};
 use polhode::inertia::Inertia;
 
+use crate::bound::of_entries;
 use crate::columns::column::{Column, Unknowns, terms_of};
 use crate::columns::sets::{sensor_columns, torque_columns};
-use crate::physical::coordinates::{Form, basis, coordinates, eigen, entries_of_coordinates};
+use crate::physical::coordinates::{Form, basis, coordinates};
 use crate::settings::Settings;
 use crate::signal::stretch::Stretch;
 use crate::signal::terms::{Terms, cross_derivative, slope};
@@ -75,15 +76,7 @@ pub fn foreseen_bound_with(
     let own = information.view((5, 5), (others, others)).into_owned().cholesky()?;
     let mixed = information.view((5, 0), (others, 5)).into_owned();
     let left = information.view((0, 0), (5, 5)) - mixed.transpose() * own.solve(&mixed);
-    let left = Form::from_fn(|i, k| left[(i, k)]);
-    let (spectrum, _) = eigen(left);
-    // what a pure spin leaves open is zero up to the rounding of sums of squares
-    if spectrum[0].is_nan() || spectrum[0] <= OPEN * spectrum[4] {
-        return None;
-    }
-    let bound = left.cholesky()?.inverse();
-    let entries = entries_of_coordinates();
-    Some(entries * bound * entries.transpose()).filter(|b| b.iter().all(|v| v.is_finite()))
+    of_entries(Form::from_fn(|i, k| left[(i, k)]), |own| Some(own.cholesky()?.inverse()))
 }
 
 /// J ω' = −ω × J ω − D ω − c |ω| J ω + τ₀, with D = k J + viscous, and its derivatives.
