@@ -3,8 +3,9 @@
 use nalgebra::{DVector, Matrix3};
 
 use crate::carrier::records::CarrierRecords;
+use crate::carrier::start::of_entries;
 use crate::carrier::system::System;
-use crate::physical::coordinates::{eigen, symmetric};
+use crate::physical::coordinates::eigen;
 use crate::thresholds::carrier::HELD;
 
 /// A body that must be physical: the place of its first entry, its unit, and what is added to the entries in that unit.
@@ -20,8 +21,7 @@ pub(super) fn bodies(system: &System, records: &CarrierRecords) -> Vec<Lawful> {
 
 /// The largest of 2 I − tr T over the moments I of a body, and its trace, in its unit.
 fn excess((place, _, base): &Lawful, z: &DVector<f64>) -> (f64, f64) {
-    let entries = z.as_slice()[*place..place + 6].iter().enumerate();
-    let tensor = entries.fold(*base, |sum, (k, entry)| sum + symmetric(k) * *entry);
+    let tensor = base + of_entries(&z.as_slice()[*place..place + 6]);
     (2.0 * eigen(tensor).0[2] - tensor.trace(), tensor.trace())
 }
 
