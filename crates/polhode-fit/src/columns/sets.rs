@@ -31,15 +31,12 @@ pub(crate) fn torque_columns(model: TorqueModel) -> Vec<Column> {
 /// The columns of what may be wrong with a sensor, in units of the rate `rms`.
 pub(crate) fn sensor_columns(priors: &SensorPriors, rms: f64) -> Vec<Column> {
     let offsets = [0, 1, 2].map(|k| Column::new(Offset(k), None));
-    let scales = [0, 1, 2].map(|k| Column::new(AxisScale(k), None));
     let angles = [0, 1, 2].map(|k| Column::new(Misalignment(k), None));
     let delays = [1, 2].map(|k| Column::new(Skew(k), None));
-    let all = offsets.into_iter().chain([Column::new(Scale, None)]).chain(scales).chain(angles).chain(delays);
-    let with_prior = |column: Column| {
-        let prior = column.effect().prior(priors, rms);
-        prior.is_some().then_some(column.with_prior(prior))
-    };
-    all.filter_map(with_prior).collect()
+    let all = offsets.into_iter().chain([Column::new(Scale, None)]).chain(axis_scales());
+    let with_prior =
+        |column: Column| column.effect().prior(priors, rms).map(|prior| column.with_prior(Some(prior)));
+    all.chain(angles).chain(delays).filter_map(with_prior).collect()
 }
 
 /// The errors of a sensor that a report speaks of, in its order.

@@ -3,6 +3,7 @@
 use crate::thresholds::flights::{NOISE_DEVIATIONS, NOISE_OF_SLOPE, NOISE_OF_VALUE, SLOW};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
 
+use crate::columns::equation::crossed;
 use crate::physical::coordinates::{Coordinates, ENTRIES, Form, basis};
 use crate::signal::stretch::Stretch;
 use crate::signal::test_functions::{Seen, TestFunctions};
@@ -67,11 +68,7 @@ impl Test {
         core::array::from_fn(|k| match k {
             0..5 => {
                 let b = basis(k);
-                // Σ w φ ω × B ω
-                let p = full * b;
-                let crossed =
-                    Vector3::new(p[(1, 2)] - p[(2, 1)], p[(2, 0)] - p[(0, 2)], p[(0, 1)] - p[(1, 0)]);
-                crossed - b * self.slope
+                crossed(&full, &b) - b * self.slope
             }
             5..8 => Vector3::ith(k - 5, self.value[k - 5]),
             8 => self.input,

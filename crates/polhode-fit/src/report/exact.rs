@@ -182,14 +182,16 @@ fn information(settings: &Settings, free: &Free) -> Result<Information, FitError
     let all = Reduced::new(&sums).ok_or_else(singular)?;
     let mut tensor = all.of_tensor().ok_or_else(singular)?;
     let (mut moved, mut torques) = (Coordinates::zeros(), Vec::new());
+    let widened = |information: Form, more: Form| {
+        let covariance = information.cholesky()?.inverse() + more;
+        Some(covariance.cholesky()?.inverse())
+    };
     let constant = free.alternatives.as_ref().filter(|_| free.torque == Acting::Constant);
     if let Some(constant) = constant.map(|found| &found.constant) {
         moved = Coordinates::from_fn(|k, _| constant.moved[k]);
         let spread = constant.spread.rows(0, 5);
         let added = spread * spread.transpose();
-        let covariance =
-            tensor.cholesky().ok_or_else(singular)?.inverse() + Form::from_fn(|i, k| added[(i, k)]);
-        tensor = covariance.cholesky().ok_or_else(singular)?.inverse();
+        tensor = widened(tensor, Form::from_fn(|i, k| added[(i, k)])).ok_or_else(singular)?;
         let each =
             torque_columns(TorqueModel::Constant).into_iter().zip(&constant.values).zip(&constant.sigmas);
         torques.extend(
@@ -204,23 +206,18 @@ fn information(settings: &Settings, free: &Free) -> Result<Information, FitError
     }
     let spreads = [free.moving.as_ref().map(|own| own.spread), free.misread.map(|own| own.spread)];
     for spread in spreads.into_iter().flatten() {
-        let covariance = tensor.cholesky().ok_or_else(singular)?.inverse() + spread;
-        tensor = covariance.cholesky().ok_or_else(singular)?.inverse();
+        tensor = widened(tensor, spread).ok_or_else(singular)?;
     }
     let curvature = tensor;
     // samples that leave a number open have no covariance, and are refused for it
-    if settings.torque == TorqueModel::Auto
-        && let Some(own) = tensor.cholesky()
-    {
-        let covariance = own.inverse() + spread(&free.models, model_of(free.torque));
-        tensor = covariance.cholesky().ok_or_else(singular)?.inverse();
+    if settings.torque == TorqueModel::Auto && tensor.cholesky().is_some() {
+        tensor = widened(tensor, spread(&free.models, model_of(free.torque))).ok_or_else(singular)?;
     }
     if !free.followed.beyond.is_empty() {
         // as far as the noise of the levels is that of the walk
         let enlarged = (levels.attitude / own.attitude).max(levels.rate / own.rate);
         let added = free.followed.beyond.iter().fold(Form::zeros(), |sum, d| sum + d * d.transpose());
-        let covariance = tensor.cholesky().ok_or_else(singular)?.inverse() + added * (enlarged * enlarged);
-        tensor = covariance.cholesky().ok_or_else(singular)?.inverse();
+        tensor = widened(tensor, added * (enlarged * enlarged)).ok_or_else(singular)?;
     }
     Ok(Information { sums, all, tensor, curvature, levels, moved, torques })
 }

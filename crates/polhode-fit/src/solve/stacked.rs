@@ -1,5 +1,7 @@
 //! Rows of all stretches and priors stacked into one triangle.
 
+use std::borrow::Cow;
+
 use nalgebra::{DMatrix, DVector, SMatrix};
 
 use crate::columns::column::{Column, Unknowns};
@@ -36,11 +38,8 @@ impl Stacked {
         let count = columns.len();
         let width = count + 6;
         let equations: usize = rows.iter().map(|rows| rows.len() / width).sum();
-        let small = triangles(rows, columns, width);
-        let all: Vec<&[f64]> =
-            small.as_ref().map_or(rows.to_vec(), |s| s.iter().map(Vec::as_slice).collect());
         let mut triangle = Triangle::new(width);
-        for row in all.iter().flat_map(|rows| rows.chunks_exact(width)) {
+        for row in triangles(rows, columns, width).iter().flat_map(|rows| rows.chunks_exact(width)) {
             triangle.push(row.iter().copied());
         }
         for (k, column) in columns.iter().enumerate() {
@@ -170,11 +169,9 @@ pub(crate) fn responses(
     deviation: f64,
 ) -> Option<Vec<Coordinates>> {
     let (wide, own) = (columns.len() + 6, columns.len() - errors);
-    let small = triangles(rows, columns, wide);
-    let all: Vec<&[f64]> = small.as_ref().map_or(rows.to_vec(), |s| s.iter().map(Vec::as_slice).collect());
     let mut triangle = Triangle::new(wide - 1);
     // the errors are the right-hand sides, in the place of the residual
-    for row in all.iter().flat_map(|rows| rows.chunks_exact(wide)) {
+    for row in triangles(rows, columns, wide).iter().flat_map(|rows| rows.chunks_exact(wide)) {
         triangle.push(row[errors..wide - 1].iter().chain(&row[..errors]).copied());
     }
     for (k, column) in columns[errors..].iter().enumerate() {
@@ -188,10 +185,13 @@ pub(crate) fn responses(
     (0..errors).map(moved).collect()
 }
 
-/// The triangle of each stretch, where some have columns of their own: those of the others then cost nothing.
-fn triangles(rows: &[&[f64]], columns: &[Column], width: usize) -> Option<Vec<Vec<f64>>> {
-    let alone = columns.iter().any(|column| column.segment.is_some()) && rows.len() > 1;
-    alone.then(|| rows.iter().map(|rows| small_triangle(rows, width)).collect())
+/// The rows of each stretch, or their triangle where some have columns of their own: those of the others then cost nothing.
+fn triangles<'a>(rows: &[&'a [f64]], columns: &[Column], width: usize) -> Vec<Cow<'a, [f64]>> {
+    if rows.len() > 1 && columns.iter().any(|column| column.segment.is_some()) {
+        rows.iter().map(|rows| small_triangle(rows, width).into()).collect()
+    } else {
+        rows.iter().map(|rows| Cow::Borrowed(*rows)).collect()
+    }
 }
 
 /// Rows of `width` numbers as the rows of their triangle: the columns that are zero in all of them are left out of it.
