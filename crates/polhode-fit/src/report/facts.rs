@@ -84,7 +84,7 @@ impl Facts<'_> {
         let limits = &self.settings.limits;
         let Deviations { free, on_face, together, held } =
             deviations(self.told, &self.joint.kept, limits, self.dissipation, &nearest)?;
-        let Answer { shape, moments, axes, v, .. } = Answer::new(&nearest.x)?;
+        let Answer { shape, moments, axes, v } = Answer::new(&nearest.x)?;
         let j = shape.tensor();
         let (sigma_principal, sigma_axes) = sigmas(&on_face, &v, &moments);
         let ratios = ratios(&on_face, &v, &moments);
@@ -103,10 +103,10 @@ impl Facts<'_> {
         let at = self.joint.unknowns(&nearest.others, nearest.x);
         let (inertia, inertia_covariance) =
             self.absolute(&j, &covariance, &together, motions.as_ref(), &at)?;
-        let excess = self.enlarged();
+        let enlarged = self.enlarged();
         let terms = terms_of_all(&weak.columns, &at);
         let torque_noise = |stretch| self.torque_noise(stretch, &j);
-        let (momentum, energy) = trends(self.stretches, |w| terms.rate(w), &j, excess, torque_noise);
+        let (momentum, energy) = trends(self.stretches, |w| terms.rate(w), &j, enlarged, torque_noise);
         // wheels and torques change both
         let per_second = |d: InvariantTrend| {
             let (rate, sigma) = (d.rate * self.rms, d.sigma * self.rms);
@@ -120,7 +120,7 @@ impl Facts<'_> {
         };
         let lines = self.chosen.equations.as_ref().map(systematic).unwrap_or_default();
         let mut estimate = Estimate {
-            principal: [moments[0], moments[1], moments[2]],
+            principal: moments.into(),
             sigma_principal,
             axes,
             sigma_axes,
@@ -160,7 +160,7 @@ impl Facts<'_> {
             unexplained: motion.and_then(|motion| motion.unexplained(&j)),
             mirror: if self.input.is_none() { shape_of(&mirrored(&j)).ok() } else { None },
             sigma_mirror: self.input.is_none().then(|| mirror_sigmas(&nearest.x, &on_face)),
-            unseen_change: unseen(weak, excess, &v),
+            unseen_change: unseen(weak, enlarged, &v),
             spikes: self.spikes.clone(),
             residuals,
             warnings: Vec::new(),
@@ -207,7 +207,6 @@ impl Facts<'_> {
     /// What warnings are drawn from.
     fn grounds<'b>(&'b self, open: Option<&'b Others>, left: Option<(f64, f64)>) -> Grounds<'b> {
         let found = self.settings.torque == TorqueModel::Auto;
-        let excess = self.enlarged();
         let equations = self.chosen.equations.as_ref().filter(|_| found);
         Grounds {
             left,
@@ -221,7 +220,7 @@ impl Facts<'_> {
             suspect: self.suspect,
             refuted: refuted(&self.chosen.weak, self.stretches, (self.variance, self.rms)),
             as_well: as_well(&self.chosen.models, self.chosen.model),
-            instead: equations.and_then(|equations| instead(equations, self.chosen.model, excess)),
+            instead: equations.and_then(|equations| instead(equations, self.chosen.model, self.enlarged())),
             scatter: self.scatter,
             differing: self.differing,
             found,

@@ -1,6 +1,7 @@
 //! What may be wrong with the sensor.
 
 use crate::setters::setters;
+
 /// Prior standard deviations of errors of the sensor, Gaussian about zero. An error with a prior is estimated with the tensor; one that
 /// is `None` is assumed to be zero.
 ///

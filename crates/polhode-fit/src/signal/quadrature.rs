@@ -1,6 +1,7 @@
 //! Weights of order 4 on irregular samples.
 
 use crate::thresholds::quadrature::NEAREST;
+
 /// Weights w with Σ w_i f(t_i) ≈ ∫ f over the span of ascending `times`: each interval integrates the cubic
 /// through its two ends and one more sample on each side.
 ///

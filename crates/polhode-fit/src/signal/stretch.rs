@@ -49,6 +49,7 @@ impl Stretch {
             ..Stretch::new(self.times[..count].to_vec(), head(&self.rates))
         }
     }
+
     /// The same with the components of the momentum of wheels in another order, and with these signs.
     pub(crate) fn with_exchanged(&self, order: [usize; 3], signs: [f64; 3]) -> Stretch {
         let exchange = |h: &Vector3<f64>| Vector3::from_fn(|k, _| signs[k] * h[order[k]]);

@@ -88,7 +88,7 @@ impl TestFunctions {
 
     /// The tests that are not zero at `t`.
     #[inline(always)]
-    pub(crate) fn at(&self, t: f64) -> core::ops::Range<usize> {
+    pub(crate) fn at(&self, t: f64) -> Range<usize> {
         let low = ((t - self.radius - self.first) / self.spacing).ceil().max(0.0) as usize;
         let high = ((t + self.radius - self.first) / self.spacing).floor();
         if high < 0.0 { 0..0 } else { low.min(self.count)..(high as usize + 1).min(self.count) }

@@ -65,8 +65,8 @@ impl Gyroscope {
     /// ```
     ///
     /// # Errors
-    /// Numbers that are not finite or have a wrong sign; a skew, for which rates at other times are needed; as many rates as times
-    /// are needed.
+    /// Numbers that are not finite or have a wrong sign; a skew, for which rates at other times are needed; another number of rates than
+    /// of times.
     pub fn read(
         &self,
         times: &[f64],

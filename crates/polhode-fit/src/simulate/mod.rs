@@ -186,7 +186,7 @@ fn read(
     Ok(Read { rates: rates.collect(), exact: found.attitudes, wheel: found.wheel })
 }
 
-/// `value` if it is finite and, where asked, not negative.
+/// Refuses a value that is not finite, or less than zero where it may not be `negative`.
 fn check(name: &'static str, values: &[f64], negative: bool) -> Result<(), SimulationError> {
     let wrong = values.iter().find(|v| !v.is_finite() || (!negative && **v < 0.0));
     let rule = if negative { "give a finite number" } else { "give a finite number of at least 0" };

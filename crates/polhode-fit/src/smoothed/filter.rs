@@ -13,6 +13,7 @@ use crate::signal::covariance::Shape;
 use crate::smoothed::dynamics::{ALL, Derivative, Law, SHARED, Square};
 
 pub(super) type State = SVector<f64, 6>;
+
 /// The covariance of torque noise per that of the attitudes, along which axes it acts: an index of [`Carried::noise`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Level {
