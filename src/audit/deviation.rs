@@ -10,6 +10,7 @@ use super::states::{Row, states};
 use super::sweep::{Allowance, Sweep, Tally};
 use super::{AttitudeError, Judgement, Reading, Trajectory};
 use crate::body::Body;
+use crate::record::median;
 use crate::rotation::Vec3;
 
 /// Groups of three rows that are compared.
@@ -95,8 +96,7 @@ impl Distance {
     /// The middle length.
     fn middle(vectors: &[Vec3<f64>]) -> f64 {
         let mut sizes: Vec<f64> = vectors.iter().map(|v| v.norm()).collect();
-        let at = sizes.len() / 2;
-        if sizes.is_empty() { 0.0 } else { *sizes.select_nth_unstable_by(at, f64::total_cmp).1 }
+        median(&mut sizes).unwrap_or(0.0)
     }
 }
 

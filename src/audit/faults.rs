@@ -4,6 +4,7 @@ use core::f64::consts::PI;
 
 use super::resolution::Writing;
 use super::{Attitudes, Fault, Reading, Trajectory};
+use crate::record::median;
 use crate::rotation::Vec3;
 
 /// An interval this many times the usual one is a jump.
@@ -63,8 +64,7 @@ pub(super) fn faults(
 /// The middle interval.
 fn usual_interval(record: &Trajectory) -> f64 {
     let mut intervals: Vec<f64> = record.times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let middle = intervals.len() / 2;
-    *intervals.select_nth_unstable_by(middle, f64::total_cmp).1
+    median(&mut intervals).unwrap_or(0.0)
 }
 
 /// The part of a unit to which that is one is known.
@@ -131,8 +131,7 @@ pub(super) fn no_rotation(record: &Trajectory, allowed: f64) -> Option<Fault> {
     let square = |row: usize| attitude.row(row).iter().map(|x| x * x).sum::<f64>() / dimension;
     let rows = attitude.len();
     let mut some: Vec<f64> = (0..rows).step_by(rows.div_ceil(MOST)).map(square).collect();
-    let middle = some.len() / 2;
-    let usual = *some.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let usual = median(&mut some)?;
     let defect = |row: usize| match attitude {
         Attitudes::Matrices(matrices) => {
             let [a, b, c] = [0, 3, 6].map(|n| Vec3([0, 1, 2].map(|k| matrices[row][n + k])));
@@ -165,11 +164,7 @@ fn plateau(record: &Trajectory) -> Option<Fault> {
     for axis in 0..3 {
         let change = |row: usize| (rates[row][axis] - rates[row - 1][axis]).abs();
         let mut changes: Vec<f64> = (1..rates.len()).map(change).filter(|change| *change > 0.0).collect();
-        if changes.len() < PLATEAU {
-            continue;
-        }
-        let middle = changes.len() / 2;
-        let usual = *changes.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let Some(usual) = median(&mut changes).filter(|_| changes.len() >= PLATEAU) else { continue };
         let mut from = 0;
         for row in 1..=rates.len() {
             if row < rates.len() && rates[row][axis] == rates[from][axis] {

@@ -27,6 +27,7 @@ use super::{
 };
 use crate::body::{Body, Problem};
 use crate::inertia::Symmetry;
+use crate::record::median;
 use crate::rotation::Vec3;
 
 /// An angular velocity between two attitudes, relative, is off by at most so many times what one of them is, over the turn.
@@ -290,8 +291,7 @@ fn window_turn(record: &Trajectory, reading: &Reading) -> f64 {
         ends.map_or(0.0, |(p, q)| (p.conjugate() * q).logarithm().norm())
     };
     let mut turns: Vec<f64> = windows.starts.iter().map(turn).collect();
-    turns.sort_by(f64::total_cmp);
-    turns.get(turns.len() / 2).copied().unwrap_or(0.0).max(f64::MIN_POSITIVE)
+    median(&mut turns).unwrap_or(0.0).max(f64::MIN_POSITIVE)
 }
 
 /// Whether angular velocities or momenta alone are the same in all rows: whether they are rounded is not to be seen.

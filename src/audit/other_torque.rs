@@ -5,6 +5,7 @@ use super::rows::Windows;
 use super::states::{Row, states};
 use super::{Frame, OtherTorque, Reading, Trajectory};
 use crate::body::{Body, Problem, Time};
+use crate::record::median;
 use crate::rotation::Vec3;
 
 /// A change of L over a window this many times what a row may be off stands out.
@@ -118,8 +119,7 @@ fn told(looks: &[Look], body: &Body, off: f64) -> Option<OtherTorque> {
 /// The middle of what `looks` have.
 fn middle(looks: &[Look], of: impl Fn(&Look) -> Option<f64>) -> Option<f64> {
     let mut values: Vec<f64> = looks.iter().filter_map(of).collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
+    median(&mut values)
 }
 
 fn look(rows: &[Row], dynamics: &Dynamics, body: &Body, free: bool) -> Option<Look> {

@@ -1,6 +1,7 @@
 //! Rows that are looked at: windows over which the body turns by part of a radian, spread over the record.
 
 use super::{AngleUnit, Attitudes, Trajectory};
+use crate::record::median;
 use crate::rotation::Vec3;
 
 /// The turn of a window, rad, where rows are close enough.
@@ -68,8 +69,7 @@ pub(super) fn typical_turn(record: &Trajectory) -> f64 {
     let rows = record.times.len();
     let count = 256.min(rows - 1);
     let mut turns: Vec<f64> = (0..count).map(|k| turn_between(record, k * (rows - 1) / count)).collect();
-    turns.sort_by(f64::total_cmp);
-    turns[turns.len() / 2]
+    median(&mut turns).unwrap_or(0.0)
 }
 
 /// How far the body turns between the rows `row` and `row + 1`, rad, or its angular velocity turns, whichever is more: a wrong

@@ -7,8 +7,8 @@ use core::ops::{Range, RangeInclusive};
 
 use nalgebra::Vector3;
 
+use super::median::median;
 use super::polynomial::Polynomial;
-use super::spikes::median;
 
 /// The longest run that is sought, and samples on either side that must agree: first so many that they do not all lie in another
 /// burst, then few, as another may be near.

@@ -6,6 +6,7 @@ use nalgebra::Vector3;
 
 use super::error::RecordError;
 use super::held::{Repeats, repeats};
+use super::median::median;
 use super::rows::RawRows;
 use super::segment::Segment;
 
@@ -51,11 +52,7 @@ pub(super) fn cleaned(file: &str, rows: RawRows) -> Result<Cleaned, RecordError>
     samples.retain(|_| is_repeated.next() != Some(&true));
     let flat = flat_tops(&samples);
     let mut intervals: Vec<f64> = samples.windows(2).map(|w| w[1].1[0] - w[0].1[0]).collect();
-    let half = intervals.len() / 2;
-    let median = match intervals.is_empty() {
-        true => 0.0,
-        false => *intervals.select_nth_unstable_by(half, f64::total_cmp).1,
-    };
+    let median = median(&mut intervals).unwrap_or(0.0);
     let finding = if evenly {
         intervals.sort_by(f64::total_cmp);
         Finding::Repeated { interval: mean(intervals.into_iter().take_while(|i| *i <= GAP * median)) }

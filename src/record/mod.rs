@@ -5,6 +5,7 @@ mod bursts;
 mod clean;
 mod error;
 mod held;
+mod median;
 mod polynomial;
 mod quantum;
 mod rows;
@@ -22,6 +23,8 @@ pub use both::both;
 use bursts::bursts;
 use clean::{Cleaned, Finding, cleaned};
 pub use error::RecordError;
+#[doc(hidden)]
+pub use median::median;
 #[doc(hidden)]
 pub use rows::RawRows;
 #[doc(hidden)]

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use nalgebra::Vector3;
 
 use super::both::both;
+use super::median::median;
 
 /// A sample that was left out because it stands out of its neighbours, alone or with others in a burst.
 #[non_exhaustive]
@@ -342,11 +343,6 @@ impl Neighbours {
         }
         Ok((nodes, count))
     }
-}
-
-pub(super) fn median(values: &mut [f64]) -> Option<f64> {
-    let middle = values.len() / 2;
-    if values.is_empty() { None } else { Some(*values.select_nth_unstable_by(middle, f64::total_cmp).1) }
 }
 
 #[cfg(test)]

@@ -2,7 +2,7 @@
 
 use super::{Kind, NOISE_SAMPLES, Rule, noise};
 use crate::num::Shown;
-use crate::record::{Record, Spike};
+use crate::record::{Record, Spike, median};
 
 /// An interval in which a reading may be missing, in median intervals.
 const LONG: f64 = 1.5;
@@ -47,11 +47,7 @@ impl Findings {
         let first = record.segments.first().and_then(|segment| segment.times().first());
         intervals.extend(before.zip(first).map(|(before, first)| (first - before, *first)));
         let mut lengths: Vec<f64> = intervals.iter().map(|(length, _)| *length).collect();
-        if lengths.is_empty() {
-            return;
-        }
-        let middle = lengths.len() / 2;
-        let usual = *lengths.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let Some(usual) = median(&mut lengths) else { return };
         let long = || intervals.iter().filter(|(length, _)| *length > LONG * usual);
         self.long += long().count();
         let first = long().map(|(_, end)| *end).reduce(f64::min);

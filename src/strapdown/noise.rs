@@ -2,6 +2,8 @@
 
 use nalgebra::Vector3;
 
+use crate::record::median;
+
 /// Degrees of the polynomials that are taken out of the readings, plus one: differences of these orders are tried.
 const ORDERS: [usize; 4] = [4, 6, 8, 10];
 
@@ -56,11 +58,7 @@ fn variance(times: &[f64], readings: &[Vector3<f64>], order: usize) -> Option<f6
         let left = r.iter().zip(weights).fold(Vector3::zeros(), |sum, (r, w)| sum + r * *w);
         squares.push(left.norm_squared() / (3.0 * norm));
     }
-    if squares.is_empty() {
-        return None;
-    }
-    let middle = squares.len() / 2;
-    let median = *squares.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let median = median(&mut squares)?;
     let limit = if median > 0.0 { OUTLYING * median } else { f64::INFINITY };
     let kept = || squares.iter().filter(|square| **square <= limit);
     Some(kept().sum::<f64>() / kept().count().max(1) as f64)

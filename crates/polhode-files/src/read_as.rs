@@ -3,6 +3,7 @@
 use core::fmt;
 
 use polhode::num::Shown;
+use polhode::record::median;
 use polhode::units::{Date, RateUnit};
 
 use crate::table::SignedAxes;
@@ -115,9 +116,5 @@ impl fmt::Display for ReadAs {
 /// Samples a second, by the median of these times between two of them.
 pub(crate) fn sample_rate(mut steps: Vec<f64>) -> Option<f64> {
     steps.retain(|step| *step > 0.0);
-    if steps.is_empty() {
-        return None;
-    }
-    let middle = steps.len() / 2;
-    Some(1.0 / *steps.select_nth_unstable_by(middle, f64::total_cmp).1)
+    median(&mut steps).map(|step| 1.0 / step)
 }

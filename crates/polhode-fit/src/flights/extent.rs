@@ -3,6 +3,8 @@
 use crate::thresholds::extent::{BESIDE, COMMON, ENDS, FEWEST, NOISE, ROUNDS, USUAL};
 use core::ops::Range;
 
+use polhode::record::median;
+
 use crate::flights::consensus::precisions;
 use crate::flights::equations::{LOCAL, Normal, Test, Vector};
 use crate::flights::flight::FlightLimit;
@@ -51,8 +53,7 @@ pub(super) fn extent(
         tests[kept.clone()].iter().for_each(|t| normal.add(t, t.scale(MOST_TORQUE, variance), LOCAL));
         at = normal.solve()?;
         let mut shares: Vec<f64> = tests[kept.clone()].iter().map(|t| share(t, &at)).collect();
-        let middle = shares.len() / 2;
-        let median = *shares.select_nth_unstable_by(middle, f64::total_cmp).1;
+        let median = median(&mut shares)?;
         let stands_out =
             |t: &Test| share(t, &at) > (USUAL * median).max(NOISE * t.noise(variance).sqrt() / t.size());
         let reach = (ENDS * run.len() as f64) as usize;

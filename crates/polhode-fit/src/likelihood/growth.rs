@@ -1,6 +1,7 @@
 //! From a first tensor to the largest likelihood, in windows that double about the middle of each stretch.
 
 use nalgebra::Vector3;
+use polhode::record::median;
 use polhode::rotation::{Quat, Vec3};
 
 use crate::likelihood::descent::{Levels, Problem, Settled};
@@ -194,10 +195,7 @@ fn scales(tracks: &[Track], model: &Model, radius: f64, known: Levels) -> Option
             sizes[usize::from(left.kind == Kind::Rate)].push(left.residual.norm());
         })?;
     }
-    let [attitude, rate] = sizes.map(|mut sizes| {
-        let middle = sizes.len() / 2;
-        if sizes.is_empty() { 0.0 } else { *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 / MEDIAN }
-    });
+    let [attitude, rate] = sizes.map(|mut sizes| median(&mut sizes).map_or(0.0, |size| size / MEDIAN));
     Some(Levels {
         attitude: attitude.max(SHARE_KEPT * known.attitude),
         rate: rate.max(SHARE_KEPT * known.rate),

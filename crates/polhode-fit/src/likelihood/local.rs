@@ -1,6 +1,7 @@
 //! Attitude and rate at nodes along a stretch of attitudes, each by a parabola of the rotation vectors about it.
 
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use polhode::record::median;
 use polhode::rotation::{Quat, Vec3};
 
 use crate::thresholds::likelihood::{FEWEST, NODE};
@@ -102,11 +103,7 @@ pub(crate) fn noise(stretches: &[(Vec<f64>, Vec<Quat<f64>>)]) -> Option<f64> {
             squares.push(left.norm_squared() / (3.0 * norm));
         }
     }
-    if squares.is_empty() {
-        return None;
-    }
-    let middle = squares.len() / 2;
-    let median = *squares.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let median = median(&mut squares)?;
     let limit = if median > 0.0 { OUTLYING * median } else { f64::INFINITY };
     let kept = squares.iter().filter(|square| **square <= limit);
     let (sum, count) = kept.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));

@@ -10,6 +10,7 @@ use crate::columns::wheel_axis::WheelAxis;
 use crate::signal::stretch::Stretch;
 use crate::thresholds::errors::{LARGEST, LARGEST_OFFSET};
 use polhode::num::Shown;
+use polhode::record::median;
 
 /// An error of the sensor, or of the momentum of wheels as it is told, that may explain a record in the place of a torque.
 #[non_exhaustive]
@@ -130,8 +131,7 @@ pub(crate) fn two_digits(x: f64) -> Shown {
 fn interval(stretches: &[Stretch]) -> f64 {
     let each = stretches.iter().flat_map(|stretch| stretch.times.windows(2).map(|pair| pair[1] - pair[0]));
     let mut each: Vec<f64> = each.collect();
-    let middle = each.len() / 2;
-    if each.is_empty() { 0.0 } else { *each.select_nth_unstable_by(middle, f64::total_cmp).1 }
+    median(&mut each).unwrap_or(0.0)
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 
 use core::ops::Range;
 
+use polhode::record::median;
 use polhode::rotation::{Quat, rotation_angle};
 
 use crate::thresholds::poses::{GAP, JUMP};
@@ -16,8 +17,7 @@ pub(super) fn new_readings(attitudes: &[Quat<f64>]) -> Vec<usize> {
 /// Where times have no gap: an interval of more than some medians.
 pub(super) fn split(times: &[f64]) -> Vec<Range<usize>> {
     let mut intervals: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    intervals.sort_by(f64::total_cmp);
-    let median = intervals.get(intervals.len() / 2).copied().unwrap_or(0.0);
+    let median = median(&mut intervals).unwrap_or(0.0);
     let mut ranges = Vec::new();
     let mut start = 0;
     for k in 1..=times.len() {
@@ -37,9 +37,7 @@ pub(crate) fn turns(attitudes: &[Quat<f64>]) -> Vec<f64> {
 /// Single attitudes that lie far off both neighbours, which lie near each other: swapped markers, a bad frame.
 pub(crate) fn jumps(attitudes: &[Quat<f64>]) -> Vec<usize> {
     let turns = turns(attitudes);
-    let mut sorted = turns.clone();
-    sorted.sort_by(f64::total_cmp);
-    let usual = JUMP * sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+    let usual = JUMP * median(&mut turns.clone()).unwrap_or(0.0);
     let is_jump = |k: &usize| {
         let past = rotation_angle(attitudes[*k - 1], attitudes[*k + 1]);
         turns[*k - 1].min(turns[*k]) > usual && past < usual

@@ -4,7 +4,7 @@ use crate::thresholds::noise::{DEVIATIONS, STATED};
 use crate::thresholds::poses::{DOUBTFUL, MOVING};
 use crate::thresholds::warnings::{APART, AS_WELL, FAR, FEW, NOISY, RESIDUALS, UNCERTAIN, UNEXPLAINED};
 use nalgebra::Vector3;
-use polhode::record::{Record, Segment, Spike};
+use polhode::record::{Record, Segment, Spike, median};
 
 use crate::likelihood::alternatives::{Alternatives, RateError};
 use crate::models::reading_error::ReadingError;
@@ -176,8 +176,7 @@ pub(super) fn warnings(e: &Estimate, grounds: &Grounds<'_>) -> Vec<Warning> {
     let named = grounds.differing.map(|found| found.named.clone()).filter(|named| !named.is_empty());
     list.extend(named.map(|unknowns| Warning::Differing { unknowns }));
     let mut levels: Vec<f64> = e.residuals.iter().map(|r| r.mean_square).collect();
-    levels.sort_by(f64::total_cmp);
-    if let Some(&median) = levels.get(levels.len() / 2).filter(|_| levels.len() > 2) {
+    if let Some(median) = median(&mut levels).filter(|_| levels.len() > 2) {
         list.extend(e.residuals.iter().filter(|r| r.mean_square > NOISY * median).map(|r| {
             Warning::NoisySegment {
                 segment: r.segment,

@@ -6,6 +6,7 @@
 //! it lies above the chord from m to 4m. Of a motion, whose V grows with the eighth power of m, and of differenced noise, whose V falls, it lies below.
 
 use nalgebra::Vector3;
+use polhode::record::median;
 
 use crate::signal::noise::off_cubic;
 use crate::signal::stretch::Stretch;
@@ -81,8 +82,7 @@ fn left(stretches: &[Stretch], stride: usize) -> Option<Left> {
         return None;
     }
     let mut squares: Vec<f64> = each.iter().map(|(square, _)| *square).collect();
-    let middle = squares.len() / 2;
-    let limit = OUTLYING * *squares.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let limit = OUTLYING * median(&mut squares)?;
     let (mut sum, mut fourth, mut walks, mut count) = (0.0, 0.0, 0.0, 0.0);
     for (square, walk) in each.into_iter().filter(|(square, _)| *square <= limit) {
         sum += square;

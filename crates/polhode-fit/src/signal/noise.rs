@@ -1,5 +1,7 @@
 //! The noise of a sensor from its own samples.
 
+use polhode::record::median;
+
 use crate::signal::stretch::Stretch;
 use crate::thresholds::noise::{DEVIATIONS, OUTLYING, STATED, WHITE};
 
@@ -19,9 +21,7 @@ pub(crate) fn variance(stretches: &[Stretch]) -> f64 {
             squares.push(left.norm_squared() / (3.0 * norm));
         }
     }
-    let middle = squares.len() / 2;
-    let median =
-        if squares.is_empty() { 0.0 } else { *squares.select_nth_unstable_by(middle, f64::total_cmp).1 };
+    let median = median(&mut squares).unwrap_or(0.0);
     let limit = if median > 0.0 { OUTLYING * median } else { f64::INFINITY };
     let (mut sum, mut count) = (0.0, 0.0);
     for square in squares.into_iter().filter(|square| *square <= limit) {

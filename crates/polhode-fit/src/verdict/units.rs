@@ -1,6 +1,6 @@
 //! Whether a record is in the units in which it was read.
 
-use polhode::record::{Record, Segment};
+use polhode::record::{Record, Segment, median};
 
 use crate::error::FitError;
 use crate::signal::stretch::Stretch;
@@ -37,10 +37,7 @@ fn steps(stretches: &[Stretch]) -> [f64; 2] {
     let each = stretches.iter().flat_map(|s| s.times.windows(2).zip(&s.rates));
     let (mut turns, mut steps): (Vec<f64>, Vec<f64>) =
         each.map(|(t, w)| ((t[1] - t[0]) * w.norm(), t[1] - t[0])).unzip();
-    let middle = turns.len() / 2;
-    [&mut turns, &mut steps].map(|list| {
-        if list.is_empty() { 0.0 } else { *list.select_nth_unstable_by(middle, f64::total_cmp).1 }
-    })
+    [&mut turns, &mut steps].map(|list| median(list).unwrap_or(0.0))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The drawings of a page.
 
 use nalgebra::Vector3;
+use polhode::record::median;
 use polhode_fit::{Estimate, FittedMotion, Record};
 use polhode_pages::document::Block;
 use polhode_pages::figure::{Canvas, Curve, Figure, page_of};
@@ -135,8 +136,7 @@ pub(super) fn residuals(e: &Estimate, motion: &[FittedMotion], record: &Record) 
 fn interval<'a>(segments: impl Iterator<Item = &'a [f64]>) -> Option<f64> {
     let mut steps: Vec<f64> =
         segments.flat_map(|times| times.windows(2)).map(|pair| pair[1] - pair[0]).collect();
-    steps.sort_by(f64::total_cmp);
-    steps.get(steps.len() / 2).copied()
+    median(&mut steps)
 }
 
 /// |J ω| and ω·J ω of the samples over their means.
