@@ -140,12 +140,10 @@ impl Reference {
     /// A short part of a motion without closed form, where the body turns fastest.
     fn window(&self, body: &Body, demand: &Demand) -> Result<Span, AdviseError> {
         let (mut begin, mut start) = (0.0, self.start);
-        let (angle, from_start) = self
-            .truth
-            .turning()
-            .map_or((0.0, 0.0), |turning| (turning.angle, turning.largest_between(0.0, SHORT / self.rate)));
-        let horizon = SHORT / self.rate;
-        if let Some(turning) = self.truth.turning().filter(|_| from_start < AS_FAST * self.rate) {
+        let (turning, horizon) = (self.truth.turning(), SHORT / self.rate);
+        let angle = turning.map_or(0.0, |turning| turning.angle);
+        let is_slow = |turning: &&Turning| turning.largest_between(0.0, horizon) < AS_FAST * self.rate;
+        if let Some(turning) = turning.filter(is_slow) {
             let fastest = |from: f64| turning.largest_between(from, (from + horizon).min(self.until));
             let latest = self.until - horizon;
             let begins = self.truth.times().filter(|time| *time <= latest);

@@ -42,7 +42,7 @@ pub(super) fn off_in_space(
     let dynamics = Dynamics::new(&start.body);
     let scale = found.scale;
     let length = dynamics.momentum(start.row.omega).norm() * scale;
-    let unit = reading.rate_unit.map_or(1.0, |unit| unit.radians_per_second(1.0));
+    let unit = reading.unit_of_rates();
     let left = LEFT * allowed.attitude.rounding;
     let limit = |vectors: &[[f64; 3]], writing: &Writing, tolerance: f64, size: f64| {
         let half = vectors.iter().map(|v| Vec3(v.map(|x| writing.half_unit(x))).norm() / size);

@@ -49,8 +49,7 @@ impl Reading {
     /// without attitude.
     #[must_use]
     pub fn omega_body(&self, record: &Trajectory, row: usize) -> Option<Vec3<f64>> {
-        let unit = self.rate_unit.map_or(1.0, |unit| unit.radians_per_second(1.0));
-        let omega = Vec3(*record.rates.as_ref()?.get(row)?) * unit;
+        let omega = Vec3(*record.rates.as_ref()?.get(row)?) * self.unit_of_rates();
         self.in_body(self.omega_frame, record, row, omega)
     }
 
@@ -59,6 +58,11 @@ impl Reading {
     pub fn momentum_body(&self, record: &Trajectory, row: usize) -> Option<Vec3<f64>> {
         let momentum = Vec3(*record.momentum.as_ref()?.get(row)?);
         self.in_body(self.momentum_frame, record, row, momentum)
+    }
+
+    /// What an angular velocity of 1 is by its numbers, rad/s.
+    pub(super) fn unit_of_rates(&self) -> f64 {
+        self.rate_unit.map_or(1.0, |unit| unit.radians_per_second(1.0))
     }
 
     fn in_body(

@@ -76,8 +76,7 @@ impl<'a> Columns<'a> {
     fn omega(&self, reading: &Reading, dynamics: &Dynamics, row: usize) -> Option<Vec3<f64>> {
         match self.source {
             Source::Rates => {
-                let unit = reading.rate_unit.map_or(1.0, |unit| unit.radians_per_second(1.0));
-                self.record.rates.as_ref().map(|rates| Vec3(rates[row]) * unit)
+                self.record.rates.as_ref().map(|rates| Vec3(rates[row]) * reading.unit_of_rates())
             }
             Source::Momentum => reading.momentum_body(self.record, row).map(|m| dynamics.omega(m)),
             Source::Attitude => None,
@@ -169,13 +168,12 @@ impl<'a> Columns<'a> {
 
     /// States at the nodes of the windows, in body axes, by `reading`; ω of attitudes alone as their mean change between nodes.
     pub(super) fn looks(&self, reading: &Reading, windows: &Windows) -> Vec<Vec<Look>> {
-        let unit = reading.rate_unit.map_or(1.0, |unit| unit.radians_per_second(1.0));
         let at = |row: usize| -> Option<Look> {
             let time = self.record.times[row];
             let attitude = reading.attitude(self.record, row);
             match &self.record.rates {
                 Some(rates) => {
-                    let omega = Vec3(rates[row]) * unit;
+                    let omega = Vec3(rates[row]) * reading.unit_of_rates();
                     let in_space = reading.omega_frame == Some(Frame::Space);
                     let omega = if in_space { attitude?.rotate_back(omega) } else { omega };
                     Some(Look { time, attitude, omega })

@@ -100,21 +100,26 @@ pub(super) fn unit_of_times(record: &Trajectory) -> Option<f64> {
 }
 
 fn too_coarse(record: &Trajectory, reading: &Reading, usual: f64) -> Option<Fault> {
-    let unit = reading.rate_unit.map_or(1.0, |unit| unit.radians_per_second(1.0));
     let rates = record.rates.as_ref()?;
     let squares = rates.iter().map(|w| Vec3(*w).norm_squared()).sum::<f64>() / rates.len() as f64;
-    let angle = squares.sqrt() * unit * usual;
+    let angle = squares.sqrt() * reading.unit_of_rates() * usual;
     (angle > PI).then_some(Fault::TooCoarse { angle })
 }
 
-fn not_normalized(record: &Trajectory, threshold: f64) -> Option<Fault> {
-    let norm = |row: &[f64], of_one: f64| (row.iter().map(|x| x * x).sum::<f64>() / of_one).sqrt();
-    let (of_one, attitude) = match record.attitude.as_ref()? {
-        attitude @ Attitudes::Quaternions(_) => (1.0, attitude),
-        attitude @ Attitudes::Matrices(_) => (3.0, attitude),
+/// Attitudes whose norm is known, and the square of that by rows.
+fn squares(record: &Trajectory) -> Option<(&Attitudes, impl Fn(usize) -> f64)> {
+    let attitude = record.attitude.as_ref()?;
+    let of_one = match attitude {
+        Attitudes::Quaternions(_) => 1.0,
+        Attitudes::Matrices(_) => 3.0,
         _ => return None,
     };
-    let errors = (0..attitude.len()).map(|row| (row, (norm(attitude.row(row), of_one) - 1.0).abs()));
+    Some((attitude, move |row| attitude.row(row).iter().map(|x| x * x).sum::<f64>() / of_one))
+}
+
+fn not_normalized(record: &Trajectory, threshold: f64) -> Option<Fault> {
+    let (attitude, square) = squares(record)?;
+    let errors = (0..attitude.len()).map(|row| (row, (square(row).sqrt() - 1.0).abs()));
     let (row, error) = errors.fold((0, 0.0), |most, next| if next.1 > most.1 { next } else { most });
     (error > threshold).then_some(Fault::NotNormalized { error, row })
 }
@@ -122,15 +127,9 @@ fn not_normalized(record: &Trajectory, threshold: f64) -> Option<Fault> {
 /// Rows whose quaternion has another norm than most have, or whose matrix is no multiple of a rotation, by more than `allowed`:
 /// the attitude that is nearest to them may be right, and what was written is not.
 pub(super) fn no_rotation(record: &Trajectory, allowed: f64) -> Option<Fault> {
-    let attitude = record.attitude.as_ref()?;
-    let dimension = match attitude {
-        Attitudes::Quaternions(_) => 1.0,
-        Attitudes::Matrices(_) => 3.0,
-        _ => return None,
-    };
-    let square = |row: usize| attitude.row(row).iter().map(|x| x * x).sum::<f64>() / dimension;
+    let (attitude, square) = squares(record)?;
     let rows = attitude.len();
-    let mut some: Vec<f64> = (0..rows).step_by(rows.div_ceil(MOST)).map(square).collect();
+    let mut some: Vec<f64> = (0..rows).step_by(rows.div_ceil(MOST)).map(&square).collect();
     let usual = median(&mut some)?;
     let defect = |row: usize| match attitude {
         Attitudes::Matrices(matrices) => {

@@ -15,7 +15,7 @@ use super::misplaced::misplaced;
 use super::other_body::other_body as other_body_of;
 use super::other_torque::other_torque as other_torque_of;
 use super::other_wheel::other_wheel as other_wheel_of;
-use super::question::MOST;
+use super::question::{MOST, contradicts};
 use super::resolution::{Writing, Writings, rounding_turn, triples};
 use super::rows::typical_turn;
 use super::signature::signature as signature_of;
@@ -410,15 +410,14 @@ fn broken_claim(reading: &Reading, finding: &Finding, question: &Question) -> Op
         };
         tied.iter().any(|found| both(&found.reading))
     };
-    let differs = |claimed: bool, same: bool| claimed && !same;
-    if differs(claims.attitude.is_some(), claims.attitude == reading.attitude) && reading.attitude.is_some() {
+    if contradicts(claims.attitude, reading.attitude) {
         return Some(Suspect::Transposed);
     }
     let frames = [(claims.omega_frame, reading.omega_frame), (claims.momentum_frame, reading.momentum_frame)];
-    if frames.iter().any(|(claimed, read)| claimed.is_some() && read.is_some() && claimed != read) {
+    if frames.iter().any(|(claimed, read)| contradicts(*claimed, *read)) {
         return Some(Suspect::OmegaFrame);
     }
-    if claims.rate_unit.is_some() && reading.rate_unit.is_some() && claims.rate_unit != reading.rate_unit {
+    if contradicts(claims.rate_unit, reading.rate_unit) {
         return Some(Suspect::Degrees);
     }
     if moments.is_some_and(|claimed| !moments_hold(claimed)) {

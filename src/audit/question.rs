@@ -143,11 +143,13 @@ impl Question {
 impl Convention {
     /// Whether `reading` is one of those that are looked at: what is taken as given holds.
     pub(super) fn admit(&self, reading: &Reading) -> bool {
-        let agrees = |claimed: Option<QuaternionOrder>, read| claimed.is_none() || read == claimed;
-        (reading.quaternion.is_none() || agrees(self.quaternion, reading.quaternion))
-            && reading.angles.is_none_or(|read| {
-                self.angles.is_none_or(|claimed| claimed == read)
-                    && self.angle_unit.is_none_or(|unit| unit == read.unit)
-            })
+        !contradicts(self.quaternion, reading.quaternion)
+            && !contradicts(self.angles, reading.angles)
+            && !contradicts(self.angle_unit, reading.angles.map(|read| read.unit))
     }
+}
+
+/// Whether what is claimed is read otherwise.
+pub(super) fn contradicts<T: PartialEq>(claimed: Option<T>, read: Option<T>) -> bool {
+    claimed.zip(read).is_some_and(|(claimed, read)| claimed != read)
 }
