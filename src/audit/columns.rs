@@ -105,7 +105,7 @@ impl<'a> Columns<'a> {
                 q = if turn.frame == Frame::Body { q * by } else { by * q };
                 before = next;
             }
-            found.push(small_angle(q, reading.attitude(self.record, end)?));
+            found.push(angle_between(q, reading.attitude(self.record, end)?));
         }
         Some(typical(found))
     }
@@ -132,7 +132,7 @@ impl<'a> Columns<'a> {
                     let omega = shot(program, dynamics, [t, next], [before, middle], SHOTS);
                     let (_, omega) = dynamics.after(program, t, next - t, before, omega);
                     let dt = self.record.times[last] - next;
-                    attitude.push(small_angle(dynamics.after(program, next, dt, middle, omega).0, after));
+                    attitude.push(angle_between(dynamics.after(program, next, dt, middle, omega).0, after));
                 }
                 continue;
             }
@@ -140,7 +140,7 @@ impl<'a> Columns<'a> {
             let [Some(omega), Some(wanted)] = omegas else { continue };
             let (turned, moved) = dynamics.after(program, t, next - t, before, omega);
             if let (Some(_), Some(wanted)) = (q, reading.attitude(self.record, end)) {
-                attitude.push(small_angle(turned, wanted));
+                attitude.push(angle_between(turned, wanted));
             }
             rates.push((moved - wanted).norm());
             size += omega.norm_squared();
@@ -224,8 +224,8 @@ fn shot(
     omega
 }
 
-/// The angle between two attitudes of norm 1, rad, by the chord where it is small.
-fn small_angle(a: Quat<f64>, b: Quat<f64>) -> f64 {
+/// The angle between two attitudes of norm 1, rad.
+pub(super) fn angle_between(a: Quat<f64>, b: Quat<f64>) -> f64 {
     (a.conjugate() * b).logarithm().norm()
 }
 

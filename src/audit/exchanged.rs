@@ -1,6 +1,7 @@
 //! Records whose rows are all exchanged with a neighbour.
 
 use super::bodies::Told;
+use super::columns::angle_between;
 use super::deviation::{Allowances, deviation};
 use super::{Attitudes, Fault, Judgement, Misplaced, Reading, Trajectory};
 use crate::body::Body;
@@ -53,7 +54,7 @@ fn goes_back_and_forth(record: &Trajectory, reading: &Reading) -> bool {
 fn change(record: &Trajectory, reading: &Reading, from: usize, to: usize) -> f64 {
     let attitudes = reading.attitude(record, from).zip(reading.attitude(record, to));
     if let Some((p, q)) = attitudes {
-        return (p.conjugate() * q).logarithm().norm();
+        return angle_between(p, q);
     }
     let vectors = record.rates.as_ref().or(record.momentum.as_ref());
     vectors.map_or(0.0, |vectors| {

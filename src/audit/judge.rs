@@ -4,7 +4,7 @@ use core::f64::consts::FRAC_PI_2;
 
 use super::as_written::off_in_space;
 use super::bodies::Told;
-use super::columns::{Columns, Source};
+use super::columns::{Columns, Source, angle_between};
 use super::conservation::conservation;
 use super::detective::Finding;
 use super::deviation::{Allowances, deviation, trace};
@@ -288,7 +288,7 @@ fn window_turn(record: &Trajectory, reading: &Reading) -> f64 {
     let windows = Columns::new(record).windows();
     let turn = |&start: &usize| {
         let ends = reading.attitude(record, start).zip(reading.attitude(record, start + windows.stride));
-        ends.map_or(0.0, |(p, q)| (p.conjugate() * q).logarithm().norm())
+        ends.map_or(0.0, |(p, q)| angle_between(p, q))
     };
     let mut turns: Vec<f64> = windows.starts.iter().map(turn).collect();
     median(&mut turns).unwrap_or(0.0).max(f64::MIN_POSITIVE)

@@ -1,5 +1,6 @@
 //! What the rows hold that are further from the motion than is allowed.
 
+use super::columns::angle_between;
 use super::deviation::{Allowances, Deviation};
 use super::sweep::{Seen, Sweep};
 use super::{Fault, Misplaced, Reading, Trajectory};
@@ -80,7 +81,7 @@ pub(super) fn misplaced(
 /// What the row `now` holds, which is `size` away from the motion.
 fn kind(before: Option<&Seen>, now: &Seen, behind: Option<&Seen>, size: f64) -> Misplaced {
     let near = |a: (Option<Quat<f64>>, Option<Vec3<f64>>), b: (Option<Quat<f64>>, Option<Vec3<f64>>)| {
-        let turn = a.0.zip(b.0).map_or(0.0, |(p, q)| (p.conjugate() * q).logarithm().norm());
+        let turn = a.0.zip(b.0).map_or(0.0, |(p, q)| angle_between(p, q));
         let scale = a.1.map_or(0.0, |omega| omega.norm());
         let rates = a.1.zip(b.1).map_or(0.0, |(v, w)| (v - w).norm() / scale.max(f64::MIN_POSITIVE));
         turn.max(rates) <= NEAR * size.min(1.0)

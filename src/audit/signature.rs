@@ -1,5 +1,6 @@
 //! Which integrator leaves the errors of a record: those of the catalogue and some others are run from its start.
 
+use super::columns::angle_between;
 use super::motion::motion;
 use super::states::{Quantities, Row, states};
 use super::{Reading, Signature, Trajectory};
@@ -71,7 +72,7 @@ pub(super) fn signature(
         return None;
     }
     let apart = |row: &Row, q: Quat<f64>, omega: Vec3<f64>| {
-        let turn = row.attitude.map_or(0.0, |measured| (q.conjugate() * measured).logarithm().norm());
+        let turn = row.attitude.map_or(0.0, |measured| angle_between(q, measured));
         let rates = (row.omega - omega).norm() / size;
         (turn, (turn * turn + rates * rates).sqrt())
     };
@@ -145,7 +146,7 @@ pub(super) fn signature(
         step: interval / best.steps as f64,
         steps_per_row: best.steps,
         order: best.method.claims(body.problem()).and_then(|claims| claims.order),
-        predicted_attitude_error: (exact[last].0.conjugate() * q).logarithm().norm(),
+        predicted_attitude_error: angle_between(exact[last].0, q),
         measured_attitude_error: errors[last].0,
         predicted_energy_change: keeps_energy.then(|| energy(&predicted)),
         measured_energy_change: keeps_energy.then(|| energy(row)),

@@ -87,22 +87,10 @@ impl Body {
         let frame = self.inertia().frame();
         let columns = [0, 1, 2].map(|axis| {
             let along: Vec3<Dd> = frame.rotate(Vec3::unit(axis));
-            frame.rotate_back(gradient.times(along)) * share
+            frame.rotate_back(times(&gradient.tensor, along)) * share
         });
         let weights = [(0, 0), (1, 1), (2, 2), (1, 2), (2, 0), (0, 1)].map(|(j, k)| columns[k][j]);
         Some(CircularGradient { orbit: gradient.orbit, weights })
-    }
-}
-
-impl GravityGradient {
-    /// 3 GM/r³ and r̂ in body axes.
-    fn position<S: Real>(&self, at: Time, attitude: Quat<S>) -> (S, Vec3<S>) {
-        let Place { strength, direction } = self.orbit.at::<S>(at);
-        (strength, attitude.rotate_back(direction))
-    }
-
-    fn times<S: Real>(&self, v: Vec3<S>) -> Vec3<S> {
-        times(&self.tensor, v)
     }
 }
 
@@ -128,8 +116,9 @@ pub(crate) fn gradient_torque<S: Real>(
 
 impl<S: Real> Potential<S> for GravityGradient {
     fn energy(&self, at: Time, attitude: Quat<S>) -> S {
-        let (strength, r) = self.position(at, attitude);
-        strength * S::of(0.5) * r.dot(self.times(r))
+        let Place { strength, direction } = self.orbit.at::<S>(at);
+        let r = attitude.rotate_back(direction);
+        strength * S::of(0.5) * r.dot(times(&self.tensor, r))
     }
 
     fn torque(&self, at: Time, attitude: Quat<S>) -> Vec3<S> {

@@ -232,17 +232,15 @@ impl Orbit {
     /// # Errors
     /// Angles that are not finite.
     pub fn in_plane(self, angles: [f64; 3]) -> Result<Self, ForceError> {
-        let [mut node, mut inclination, mut argument] = [Quat::<Dd>::identity(); 3];
-        for (turn, axis, name, angle) in [
-            (&mut node, 2, "the longitude of the node", angles[0]),
-            (&mut inclination, 0, "the inclination", angles[1]),
-            (&mut argument, 2, "the argument of the periapsis", angles[2]),
-        ] {
+        let turn = |axis: usize, name: &'static str, angle: f64| {
             let (sin, cos) = (Dd::of(finite(NAME, name, angle)?) * 0.5).sin_cos();
             let mut v = Vec3::zero();
             v[axis] = sin;
-            *turn = Quat::new(cos, v);
-        }
+            Ok::<_, ForceError>(Quat::new(cos, v))
+        };
+        let node = turn(2, "the longitude of the node", angles[0])?;
+        let inclination = turn(0, "the inclination", angles[1])?;
+        let argument = turn(2, "the argument of the periapsis", angles[2])?;
         Ok(Orbit { plane: Some(node * inclination * argument), ..self })
     }
 
