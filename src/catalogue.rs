@@ -10,7 +10,7 @@ use crate::body::{Body, Force, Orbit, Wheel, WheelAtStart};
 use crate::error::Error;
 use crate::flow::{Mode, TumblingElements};
 use crate::inertia::{Amount, Inertia, MassError, MassProperties, Solid};
-use crate::rotation::EulerSequence;
+use crate::rotation::{EulerSequence, Quat};
 
 mod hyperion;
 
@@ -423,14 +423,17 @@ const TOUTATIS: Orientation = Orientation {
     source: "3-1-3 angles of Takahashi, Busch and Scheeres, Astron. J. 146 (2013) 95, with body axes middle, short, long, as quoted in the tests of Principia; they give the pole 180.2, -54.75 degrees of Zhao et al., arXiv:1504.02024, to 0.3 degrees",
 };
 
-/// The angles are those of axes along the middle, the short and the long axis of the asteroid; ours are long, middle, short.
 fn toutatis() -> [f64; 4] {
     let degrees = core::f64::consts::PI / 180.0;
-    let published = EulerSequence::default().attitude([147.5, 63.9, 241.5].map(|angle| angle * degrees));
+    by_middle_short_long([147.5, 63.9, 241.5].map(|angle| angle * degrees))
+}
+
+/// The attitude by angles z-x-z, rad, of axes along the middle, the short and the long axis; ours are long, middle, short.
+fn by_middle_short_long(angles: [f64; 3]) -> [f64; 4] {
+    let published = EulerSequence::default().attitude(angles);
     // x to z, y to x, z to y
     let named = UnitQuaternion::new_unchecked(Quaternion::new(0.5, -0.5, -0.5, -0.5));
-    let turn = published * named;
-    [turn.w, turn.i, turn.j, turn.k]
+    Quat::<f64>::from(published * named).components()
 }
 
 /// Tops stand where their problem puts them.
@@ -544,6 +547,15 @@ fn water() -> Result<[f64; 3], MassError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::flow::FreeMotion;
+
+    pub(super) fn attitude_of(named: &NamedBody) -> UnitQuaternion<f64> {
+        Quat::from_components(named.attitude).into()
+    }
+
+    pub(super) fn motion_of(named: &NamedBody) -> FreeMotion {
+        FreeMotion::from_omega(&named.inertia, attitude_of(named), named.omega_body.into()).unwrap()
+    }
 
     #[test]
     fn every_entry_is_a_valid_body() {
@@ -555,15 +567,8 @@ mod tests {
     /// Zhao et al., arXiv:1504.02024: the pole of the angular momentum, which does not come from these angles.
     #[test]
     fn toutatis_points_to_its_published_pole() {
-        let toutatis = body("toutatis").unwrap();
-        let [w, x, y, z] = toutatis.attitude;
-        let attitude = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
-        let motion = crate::flow::FreeMotion::from_omega(
-            &toutatis.inertia,
-            attitude,
-            Vector3::from(toutatis.omega_body),
-        );
-        let [longitude, latitude] = motion.unwrap().tumbling().unwrap().pole.map(f64::to_degrees);
+        let motion = motion_of(&body("toutatis").unwrap());
+        let [longitude, latitude] = motion.tumbling().unwrap().pole.map(f64::to_degrees);
         assert!((longitude.rem_euclid(360.0) - 180.2).abs() < 0.3, "{longitude}");
         assert!((latitude + 54.75).abs() < 0.3, "{latitude}");
     }
@@ -571,13 +576,7 @@ mod tests {
     /// Each paper's other figures come out of the elements that it gives.
     #[test]
     fn tumblers_reproduce_the_figures_of_their_papers() {
-        let motion = |name: &str| {
-            let found = body(name).unwrap();
-            let [w, x, y, z] = found.attitude;
-            let attitude = UnitQuaternion::new_unchecked(Quaternion::new(w, x, y, z));
-            let omega = Vector3::from(found.omega_body);
-            crate::flow::FreeMotion::from_omega(&found.inertia, attitude, omega).unwrap()
-        };
+        let motion = |name: &str| motion_of(&body(name).unwrap());
         let apophis = motion("apophis");
         let elements = apophis.tumbling().unwrap();
         // P_1 = 30.56 +- 0.01 h and 2E I_3/L^2 = 1.024 +- 0.013

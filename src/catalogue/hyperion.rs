@@ -1,10 +1,9 @@
 //! Hyperion at the four flybys that saw it turn.
 
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use nalgebra::Vector3;
 
-use super::{Entry, NamedOrbit, Orientation, RATIO};
+use super::{Entry, NamedOrbit, Orientation, RATIO, by_middle_short_long};
 use crate::body::Orbit;
-use crate::rotation::EulerSequence;
 
 /// Once round Saturn, d: as published programs have it.
 const PERIOD: f64 = 21.276_609;
@@ -28,7 +27,7 @@ struct Flyby {
     eccentricity: f64,
     /// Mean anomaly, rad.
     anomaly: f64,
-    /// θ, φ, ψ, z-x-z, rad.
+    /// θ, φ, ψ, z-x-z, rad, from space to A, B, C, the middle, the short and the long axis.
     angles: [f64; 3],
     /// Direction of the angular velocity, about A, B, C.
     direction: [f64; 3],
@@ -89,6 +88,7 @@ pub(super) fn entries() -> impl Iterator<Item = Entry> {
         // three digits of a direction are no unit vector
         let direction = Vector3::from(flyby.direction).normalize() * (flyby.rate * mean_motion());
         let [across, up, along] = direction.into();
+        let [theta, phi, psi] = flyby.angles;
         Entry {
             name: flyby.name,
             summary: flyby.summary,
@@ -97,20 +97,11 @@ pub(super) fn entries() -> impl Iterator<Item = Entry> {
             moments: Ok(MOMENTS),
             omega_body: [along, across, up],
             attitude: Some((
-                attitude(flyby.angles),
+                by_middle_short_long([-psi, -phi, -theta]),
                 Orientation { frame: FRAME, epoch: Some(flyby.date), source: SPIN_SOURCE },
             )),
         }
     })
-}
-
-/// From the long, the middle and the short axis to space.
-fn attitude([theta, phi, psi]: [f64; 3]) -> [f64; 4] {
-    let printed = EulerSequence::default().attitude([-psi, -phi, -theta]);
-    // the long axis is C, the middle one A, the short one B
-    let named = UnitQuaternion::new_unchecked(Quaternion::new(0.5, -0.5, -0.5, -0.5));
-    let turn = printed * named;
-    [turn.w, turn.i, turn.j, turn.k]
 }
 
 /// The orbit of the body called `name`, if it is one of these.
@@ -126,17 +117,13 @@ pub(super) fn orbit(name: &str) -> Option<NamedOrbit> {
 mod tests {
     use nalgebra::{Matrix3, Vector3};
 
-    use super::super::{NamedBody, body};
+    use super::super::body;
+    use super::super::tests::{attitude_of, motion_of};
     use super::FLYBYS;
-    use crate::flow::{FreeMotion, Mode};
+    use crate::flow::Mode;
     use crate::rotation::EulerSequence;
 
     const NAMES: [&str; 4] = ["hyperion", "hyperion-2005-08", "hyperion-2005-06", "hyperion-1981"];
-
-    fn attitude_of(named: &NamedBody) -> nalgebra::UnitQuaternion<f64> {
-        let [w, x, y, z] = named.attitude;
-        nalgebra::UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(w, x, y, z))
-    }
 
     /// The other print of the last flyby: Euler angles z-x-z of the long, the middle and the short axis, 72 degrees a day about
     /// (0.902, 0.133, 0.411), each to its last digit.
@@ -172,8 +159,7 @@ mod tests {
             assert!(rate > 4.2 && rate < 4.5, "{name}: {rate}");
             let off = libm::acos(omega.x / omega.norm()).to_degrees();
             assert!(off > 24.0 && off < 36.0, "{name}: {off}");
-            let motion = FreeMotion::from_omega(&named.inertia, attitude_of(&named), omega).unwrap();
-            let elements = motion.tumbling().unwrap();
+            let elements = motion_of(&named).tumbling().unwrap();
             assert_eq!(elements.mode, Mode::LongAxis);
             let days = elements.rotation_period / 86_400.0;
             assert!((days - 16.0).abs() < 1.0, "{name}: {days}");
