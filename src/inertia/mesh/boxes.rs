@@ -14,6 +14,17 @@ impl Default for Bounds {
 }
 
 impl Bounds {
+    pub(super) fn around(points: &[[f64; 3]]) -> Self {
+        let mut bounds = Bounds::default();
+        points.iter().for_each(|at| bounds.add(at));
+        bounds
+    }
+
+    /// How long it is along an axis.
+    pub(super) fn edge(&self, axis: usize) -> f64 {
+        self.high[axis] - self.low[axis]
+    }
+
     pub(super) fn add(&mut self, at: &[f64; 3]) {
         self.low = [0, 1, 2].map(|k| self.low[k].min(at[k]));
         self.high = [0, 1, 2].map(|k| self.high[k].max(at[k]));
@@ -70,8 +81,8 @@ fn build(boxes: &mut [Bounds], around: &mut Vec<Bounds>) {
     if boxes.len() < 2 {
         return;
     }
-    let edge = |axis: usize| all.high[axis] - all.low[axis];
-    let axis = (1..3).fold(0, |longest, axis| if edge(axis) > edge(longest) { axis } else { longest });
+    let longer = |one: usize, other: usize| if all.edge(other) > all.edge(one) { other } else { one };
+    let axis = (1..3).fold(0, longer);
     let middle = boxes.len() / 2;
     boxes.select_nth_unstable_by(middle, |a, b| {
         (0.5 * a.low[axis] + 0.5 * a.high[axis]).total_cmp(&(0.5 * b.low[axis] + 0.5 * b.high[axis]))

@@ -85,8 +85,7 @@ impl Welded {
         let mut roots: Vec<u32> = (0..self.vertices.len() as u32).collect();
         for &[a, b, c] in &self.triangles {
             for other in [b, c] {
-                let (r, s) = (root(&mut roots, a), root(&mut roots, other));
-                roots[r.max(s) as usize] = r.min(s);
+                join(&mut roots, a, other);
             }
         }
         let mut parts: Vec<Part> = Vec::new();
@@ -152,6 +151,12 @@ pub(super) fn directed([a, b, c]: [u32; 3]) -> [(u32, u32); 3] {
 /// Lower end, upper end, and in the last bit the direction.
 pub(super) fn key((from, to): (u32, u32)) -> u64 {
     u64::from(from.min(to)) << 32 | u64::from(from.max(to)) << 1 | u64::from(from > to)
+}
+
+/// Makes one set of those of two vertices.
+pub(super) fn join(roots: &mut [u32], a: u32, b: u32) {
+    let (r, s) = (root(roots, a), root(roots, b));
+    roots[r.max(s) as usize] = r.min(s);
 }
 
 /// The representative of a set of connected vertices; paths are halved on the way.

@@ -13,9 +13,8 @@ const PLACE: f64 = 0.381_966_011_250_105_1;
 /// The volume that counts more than once, or as a hole where nothing is, over `volume`: lengths along the lines between the
 /// triangles that they cross, by how often these wind around them.
 pub(super) fn doubled(mesh: &Welded, volume: f64) -> f64 {
-    let mut bounds = Bounds::default();
-    mesh.vertices.iter().for_each(|at| bounds.add(at));
-    let cell = |axis: usize| (bounds.high[axis] - bounds.low[axis]) / LINES as f64;
+    let bounds = Bounds::around(&mesh.vertices);
+    let cell = |axis: usize| bounds.edge(axis) / LINES as f64;
     let at = |axis: usize, line: usize| bounds.low[axis] + (line as f64 + PLACE) * cell(axis);
     // the first line at or above a coordinate
     let first = |axis: usize, x: f64| {

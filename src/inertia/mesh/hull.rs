@@ -1,8 +1,8 @@
 //! Convex hulls: C. B. Barber, D. P. Dobkin and H. Huhdanpaa, The Quickhull algorithm for convex hulls, ACM Transactions on
 //! Mathematical Software 22 (1996) 469–483.
 
-use super::MeshError;
 use super::welded::check_extent;
+use super::{MeshError, largest_triple};
 use crate::num::Dd;
 use crate::rotation::Vec3;
 
@@ -183,7 +183,7 @@ impl Hull<'_> {
         let [a, b, c, p] = [a, b, c, p].map(|k| self.at(k));
         let [u, v, w] = [b, c, p].map(|other| other + -a);
         let plain = u.cross(v).dot(w);
-        let size = without_sign(u, v, w);
+        let size = largest_triple(w, u, v);
         if plain.abs() > PLAIN * size {
             return plain;
         }
@@ -191,10 +191,4 @@ impl Hull<'_> {
         let careful = exact(b).cross(exact(c)).dot(exact(p)).hi();
         if careful.abs() > CAREFUL * size { careful } else { 0.0 }
     }
-}
-
-/// The determinant if all its terms had one sign.
-fn without_sign(u: Vec3<f64>, v: Vec3<f64>, w: Vec3<f64>) -> f64 {
-    let [u, v, w] = [u, v, w].map(|x| x.0.map(f64::abs));
-    (0..3).map(|k| w[k] * (u[(k + 1) % 3] * v[(k + 2) % 3] + u[(k + 2) % 3] * v[(k + 1) % 3])).sum()
 }

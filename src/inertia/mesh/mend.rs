@@ -4,7 +4,7 @@ use core::fmt;
 use std::collections::HashMap;
 
 use super::boxes::Bounds;
-use super::closed::{directed, key, root};
+use super::closed::{directed, join, key, root};
 use super::welded::Welded;
 use super::{Mesh, MeshError, Surface};
 use crate::rotation::Vec3;
@@ -118,7 +118,8 @@ pub(super) fn mended(surface: &Surface, weld: f64) -> Result<(Mesh, Vec<Repair>)
 pub(super) fn closed(surface: &Surface, weld: f64, how: Closing) -> Result<(Mesh, Vec<Repair>), MeshError> {
     if how == Closing::Hull {
         let mesh = surface.hull()?.mesh()?;
-        let volume = 1.0 - spanned(&surface.welded).abs() / mesh.volume();
+        let welded = &surface.welded;
+        let volume = 1.0 - welded.spanned_from(welded.middle()).abs() / mesh.volume();
         return Ok((mesh, vec![Repair::Hull { volume }]));
     }
     let found = mended(surface, weld);
@@ -188,8 +189,7 @@ fn tidied(surface: &Surface, weld: f64) -> Result<(Surface, Vec<Repair>), MeshEr
 
 /// Vertices closer than `distance` as one, in chains; how many were replaced.
 fn weld_vertices(mesh: &Welded, distance: f64) -> Result<(Welded, usize), MeshError> {
-    let mut bounds = Bounds::default();
-    mesh.vertices.iter().for_each(|at| bounds.add(at));
+    let bounds = Bounds::around(&mesh.vertices);
     let cell = |at: &[f64; 3]| [0, 1, 2].map(|k| ((at[k] - bounds.low[k]) / distance).floor() as i64);
     let mut cells: HashMap<[i64; 3], Vec<u32>> = HashMap::new();
     let mut roots: Vec<u32> = (0..mesh.vertices.len() as u32).collect();
@@ -203,8 +203,7 @@ fn weld_vertices(mesh: &Welded, distance: f64) -> Result<(Welded, usize), MeshEr
             {
                 let there = mesh.vertices[other as usize];
                 if (Vec3(*at) + -Vec3(there)).norm_squared() <= distance * distance {
-                    let (r, s) = (root(&mut roots, number as u32), root(&mut roots, other));
-                    roots[r.max(s) as usize] = r.min(s);
+                    join(&mut roots, number as u32, other);
                 }
             }
         }
@@ -284,11 +283,6 @@ fn turn_alike(mesh: &mut Welded) -> usize {
     count
 }
 
-/// Signed volume between a surface and the middle of its bounding box.
-fn spanned(mesh: &Welded) -> f64 {
-    mesh.spanned_from(mesh.middle())
-}
-
 fn area(mesh: &Welded) -> f64 {
     let each = mesh.triangles.iter().map(|&triangle| {
         let [a, b, c] = mesh.corners(triangle);
@@ -298,6 +292,7 @@ fn area(mesh: &Welded) -> f64 {
 }
 
 impl Welded {
+    /// Signed volume between the surface and a point.
     fn spanned_from(&self, apex: Vec3<f64>) -> f64 {
         let each = self.triangles.iter().map(|&triangle| {
             let [a, b, c] = self.corners(triangle).map(|at| at + -apex);

@@ -65,11 +65,7 @@ impl Mesh {
         for corners in triangles {
             welded.add(corners.map(Into::into))?;
         }
-        Self::of(welded)
-    }
-
-    fn of(mesh: Welded) -> Result<Self, MeshError> {
-        Self::of_welded(&mesh)
+        Self::of_welded(&welded)
     }
 
     fn of_welded(mesh: &Welded) -> Result<Self, MeshError> {

@@ -1,12 +1,11 @@
 //! Triangles as files hold them: open or closed, in any unit.
 
-use core::mem::take;
 use std::collections::{BTreeMap, BTreeSet};
 
 use nalgebra::{Matrix3, Vector3};
 
 use super::boxes::Bounds;
-use super::closed::{directed, root};
+use super::closed::{directed, join, root};
 use super::welded::Welded;
 use super::{Closing, Mesh, MeshError, Repair, hull, mend};
 use crate::inertia::symmetric::from_second_moments;
@@ -140,9 +139,8 @@ impl Surface {
     /// Edges of the box around it along the axes.
     #[must_use]
     pub fn extents(&self) -> [f64; 3] {
-        let mut bounds = Bounds::default();
-        self.welded.vertices.iter().for_each(|at| bounds.add(at));
-        [0, 1, 2].map(|k| bounds.high[k] - bounds.low[k])
+        let bounds = Bounds::around(&self.welded.vertices);
+        [0, 1, 2].map(|k| bounds.edge(k))
     }
 
     /// Names of groups, each once: `g` and `o` of an OBJ file, `solid` of an ASCII STL.
@@ -296,11 +294,10 @@ impl Welded {
         net.retain(|_, count| *count != 0);
         let mut roots: Vec<u32> = (0..self.vertices.len() as u32).collect();
         for &(a, b) in net.keys() {
-            let (r, s) = (root(&mut roots, a), root(&mut roots, b));
-            roots[r.max(s) as usize] = r.min(s);
+            join(&mut roots, a, b);
         }
         let mut parts: BTreeMap<u32, Rim> = BTreeMap::new();
-        for ((low, high), count) in take(&mut net) {
+        for ((low, high), count) in net {
             let edge = if count > 0 { (low, high) } else { (high, low) };
             let part = parts.entry(root(&mut roots, low)).or_default();
             part.extend(core::iter::repeat_n(edge, count.unsigned_abs() as usize));

@@ -109,9 +109,8 @@ impl Welded {
 
     /// The middle of the bounding box.
     pub(super) fn middle(&self) -> Vec3<f64> {
-        let mut bounds = Bounds::default();
-        self.vertices.iter().for_each(|at| bounds.add(at));
-        Vec3([0, 1, 2].map(|k| bounds.low[k] + 0.5 * (bounds.high[k] - bounds.low[k])))
+        let bounds = Bounds::around(&self.vertices);
+        Vec3([0, 1, 2].map(|k| bounds.low[k] + 0.5 * bounds.edge(k)))
     }
 
     /// As [`check_extent`] of the vertices.
@@ -122,9 +121,8 @@ impl Welded {
 
 /// The fifth power of the longest edge of the bounding box, and the place of that, are doubles with all their digits.
 pub(super) fn check_extent(points: &[[f64; 3]]) -> Result<(), MeshError> {
-    let mut bounds = Bounds::default();
-    points.iter().for_each(|at| bounds.add(at));
-    let extent = (0..3).map(|k| bounds.high[k] - bounds.low[k]).fold(0.0, f64::max);
+    let bounds = Bounds::around(points);
+    let extent = (0..3).map(|k| bounds.edge(k)).fold(0.0, f64::max);
     let reach = (0..3).map(|k| bounds.high[k].max(-bounds.low[k])).fold(0.0, f64::max);
     if EXTENTS.contains(&extent) && LENGTHS.contains(&reach) {
         Ok(())
