@@ -86,7 +86,7 @@ fn normalized(q: Quat<f64>) -> Quat<f64> {
         return q * (1.0 / square.sqrt());
     }
     let largest = q.components().iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    let scaled = Quat::from_components(q.components().map(|x| x / largest));
+    let scaled = q.map(|x| x / largest);
     scaled * (1.0 / scaled.norm_squared().sqrt())
 }
 

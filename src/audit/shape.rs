@@ -3,7 +3,7 @@
 use nalgebra::Matrix3;
 
 use crate::body::Body;
-use crate::inertia::Inertia;
+use crate::inertia::{Inertia, from_entries};
 use crate::num::eigen::eigen;
 use crate::rotation::{Quat, Vec3};
 
@@ -104,8 +104,7 @@ fn body_of(gram: [[f64; 6]; 6]) -> Option<Body> {
         }
     }
     let trace = entries[0] + entries[1] + entries[2];
-    let [xx, yy, zz, xy, xz, yz] = entries.map(|entry| entry / trace);
-    let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+    let tensor = from_entries(entries.map(|entry| entry / trace));
     // what a lamina leaves to rounding may lie beyond what a body can be: the nearest to it that is nearer to a ball
     let rounder = |part: f64| tensor * (1.0 - part) + Matrix3::from_diagonal_element(part / 3.0);
     let inertia = ROUNDER.into_iter().find_map(|part| Inertia::from_tensor(rounder(part)).ok())?;

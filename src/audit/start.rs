@@ -1,12 +1,10 @@
 //! The start, and where it is not given the body, with which the exact motion comes nearest to a record.
 
-use nalgebra::Matrix3;
-
 use super::bodies::Told;
 use super::motion::motion;
 use super::states::Row;
 use crate::body::{Body, Problem};
-use crate::inertia::Inertia;
+use crate::inertia::{Inertia, from_entries};
 use crate::num::eigen::eigen;
 use crate::rotation::{Quat, Vec3};
 
@@ -180,8 +178,7 @@ fn changed(start: &Start, told: Option<&Told>, change: [f64; UNKNOWNS], size: f6
         return Some(Start { row, body });
     }
     let old = start.body.inertia().tensor();
-    let [xx, yy, zz, xy, xz, yz] = tensor.map(|entry| entry * old.trace());
-    let new = old + Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+    let new = old + from_entries(tensor.map(|entry| entry * old.trace()));
     let inertia = Inertia::from_tensor(new / new.trace()).ok()?;
     Some(Start { row, body: Body::free(inertia) })
 }

@@ -118,7 +118,7 @@ impl Body {
             return self;
         }
         if let Some(given) = given.filter(|given| self.has_in_range(*given)) {
-            let scaled = Vec3(given.0.map(|c| c / self.scale()));
+            let scaled = given.map(|c| c / self.scale());
             let moment = self.inertia.frame().rotate_back(Vec3::of(scaled));
             let moment = self.linear.map_or(moment, |linear| linear.moment + moment);
             self.linear = (moment != Vec3::zero()).then_some(LinearPotential { moment });
@@ -186,7 +186,7 @@ impl Body {
 
     /// Whether the solver frame has digits for a potential linear in the vertical with this moment, N m.
     fn has_in_range(&self, moment: Vec3<f64>) -> bool {
-        let scaled = Vec3(moment.0.map(|c| c / self.scale()));
+        let scaled = moment.map(|c| c / self.scale());
         clear(scaled.magnitude()) && clear(moment.magnitude())
     }
 

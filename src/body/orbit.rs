@@ -488,8 +488,7 @@ mod tests {
                 let across = Vec3([x / r, y / r, Dd::ZERO]) - place.direction;
                 (across.norm() + (place.strength / strength - 1.0).abs()).hi()
             };
-            let quick =
-                Place { strength: Dd::of(quick.strength), direction: Vec3(quick.direction.0.map(Dd::of)) };
+            let quick = Place { strength: Dd::of(quick.strength), direction: quick.direction.map(Dd::of) };
             let (quick, precise) = (error(quick), error(precise));
             // over many revolutions double-double keeps as many digits fewer as the time has
             let most = 1e-29 * (1.0 + 0.01 * s.abs());

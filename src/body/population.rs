@@ -1,9 +1,8 @@
 //! Populations of bodies: a body and a start that are known with an uncertainty. Needs the feature `random`.
 
-use nalgebra::Matrix3;
 use thiserror::Error;
 
-use crate::inertia::{Inertia, InertiaError};
+use crate::inertia::{Inertia, InertiaError, from_entries};
 use crate::num::{Covariance, Distribution, Random, Real};
 use crate::rotation::{Quat, Vec3};
 
@@ -128,7 +127,7 @@ impl Population {
                 let ((inertia, deviation), draws) = valid(|| {
                     let deviation = covariance.draw(&mut random);
                     let [.., xx, yy, zz, xy, xz, yz] = deviation;
-                    let drawn = inertia.tensor() + symmetric([xx, yy, zz, xy, xz, yz]);
+                    let drawn = inertia.tensor() + from_entries([xx, yy, zz, xy, xz, yz]);
                     Ok((Inertia::from_tensor(drawn)?, deviation))
                 })?;
                 let [a, b, c, x, y, z, ..] = deviation;
@@ -167,7 +166,7 @@ impl Tensors {
         match self {
             Self::Fixed(inertia) => Ok((inertia.clone(), Covariance::zero())),
             Self::Entries(entries) => {
-                Ok((Inertia::from_tensor(symmetric(entries.mean()))?, entries.covariance()))
+                Ok((Inertia::from_tensor(from_entries(entries.mean()))?, entries.covariance()))
             }
             Self::Moments { axes, moments } => {
                 let mean = axes.with_moments(moments.mean())?;
@@ -189,7 +188,7 @@ impl Tensors {
         match self {
             Self::Fixed(inertia) => Ok(inertia.clone()),
             Self::Moments { axes, moments } => axes.with_moments(moments.draw(random)),
-            Self::Entries(entries) => Inertia::from_tensor(symmetric(entries.draw(random))),
+            Self::Entries(entries) => Inertia::from_tensor(from_entries(entries.draw(random))),
         }
     }
 }
@@ -227,10 +226,6 @@ fn turned_by(vector: Vec3<f64>) -> Quat<f64> {
     let half = vector * 0.5;
     let (sinc, cos) = half.norm_squared().sinc_cos_of_root();
     Quat::new(cos, half * sinc)
-}
-
-fn symmetric([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3<f64> {
-    Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 }
 
 /// A member that could not be drawn.

@@ -96,10 +96,9 @@ impl Region {
         tolerance: f64,
     ) -> Result<MassProperties, MassDistributionError> {
         self.check()?;
-        let region = *self;
         integrate_mass(
             |u| {
-                let (at, volume) = region.element(u);
+                let (at, volume) = self.element(u);
                 let rho = density(at);
                 if rho >= 0.0 && rho.is_finite() {
                     Ok((at, rho * volume))

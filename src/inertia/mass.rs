@@ -158,7 +158,7 @@ impl MassProperties {
             return Err(MassError::OutOfRange);
         }
         let center = Vec3::of(origin.into()) + center;
-        Self::checked(mass.hi(), Vec3(center.0.map(Dd::hi)).into(), tensor.rounded())
+        Self::checked(mass.hi(), center.map(Dd::hi).into(), tensor.rounded())
     }
 
     /// The body shifted by `by`.
@@ -172,11 +172,11 @@ impl MassProperties {
 
     /// The body turned about the origin: a point v of it moves to q v q*.
     pub fn turned(&self, rotation: UnitQuaternion<f64>) -> Self {
-        let q = Quat::of(Quat::<f64>::from(rotation)).normalized();
+        let q = Quat::of(rotation.into()).normalized();
         let center = q.rotate(Vec3::of(self.center_of_mass.into()));
         MassProperties {
             mass: self.mass,
-            center_of_mass: Vec3(center.0.map(Dd::hi)).into(),
+            center_of_mass: center.map(Dd::hi).into(),
             tensor: Tensor::symmetric_part(&self.tensor).turned(q).rounded(),
         }
     }
@@ -238,7 +238,7 @@ impl MassProperties {
     /// axes of the frame. Axes of equal moments are one choice among many.
     pub fn principal_axes(&self) -> UnitQuaternion<f64> {
         let q = frame_quaternion(self.spectrum().axes);
-        Quat::from_components(q.components().map(Dd::hi)).into()
+        q.map(Dd::hi).into()
     }
 
     /// By how much the sum of the other two principal moments exceeds the k-th, kg m²: 0 for a plate's third.

@@ -19,5 +19,6 @@ pub use error::{InertiaError, MassError};
 pub use mass::{Amount, MassProperties};
 pub use mesh::{Boundary, Closing, Edge, FLOAT_WELD, Mesh, MeshError, Repair, Surface, SurfaceBuilder};
 pub use solids::Solid;
+pub(crate) use symmetric::from_entries;
 pub use symmetry::{Class, Symmetry};
 pub use tensor::{Inertia, InertiaShape};

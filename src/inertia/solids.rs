@@ -291,23 +291,14 @@ impl Solid {
     }
 
     fn check_order(&self) -> Result<(), MassError> {
-        let shape = self.name();
-        match *self {
-            Solid::Tube { inner, outer, .. } if inner >= outer => Err(MassError::Sizes {
-                shape,
-                small_name: "inner radius",
-                small: inner,
-                large_name: "outer radius",
-                large: outer,
-            }),
-            Solid::Torus { ring, tube } if tube >= ring => Err(MassError::Sizes {
-                shape,
-                small_name: "tube radius",
-                small: tube,
-                large_name: "ring radius",
-                large: ring,
-            }),
-            _ => Ok(()),
+        let (small_name, small, large_name, large) = match *self {
+            Solid::Tube { inner, outer, .. } => ("inner radius", inner, "outer radius", outer),
+            Solid::Torus { ring, tube } => ("tube radius", tube, "ring radius", ring),
+            _ => return Ok(()),
+        };
+        if small < large {
+            return Ok(());
         }
+        Err(MassError::Sizes { shape: self.name(), small_name, small, large_name, large })
     }
 }

@@ -5,6 +5,7 @@ use core::ops::{Add, Sub};
 use nalgebra::Matrix3;
 
 use super::InertiaError;
+use super::checks::check_finite;
 use super::principal::principal_axes;
 use crate::num::Dd;
 use crate::rotation::{Quat, Vec3};
@@ -65,7 +66,7 @@ impl Sub for Tensor {
 }
 
 /// The symmetric matrix with the entries xx, yy, zz, xy, xz, yz.
-pub(super) fn from_entries([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3<f64> {
+pub(crate) fn from_entries([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Matrix3<f64> {
     Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
 }
 
@@ -94,9 +95,7 @@ impl Spectrum {
     /// # Errors
     /// Entries that are not finite.
     pub(super) fn of(matrix: &Matrix3<f64>) -> Result<Self, InertiaError> {
-        if let Some(&value) = matrix.iter().find(|value| !value.is_finite()) {
-            return Err(InertiaError::NotFinite { value });
-        }
+        check_finite(matrix.as_slice())?;
         Ok(Self::of_finite(matrix))
     }
 

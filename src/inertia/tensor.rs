@@ -150,7 +150,7 @@ impl Inertia {
         let diagonal = |i: usize, j: usize| if i == j { self.moments[i] } else { Dd::of(0.0) };
         let (_, axes) = principal_axes([0, 1, 2].map(|i| [0, 1, 2].map(|j| diagonal(i, j))));
         let q = self.frame * frame_quaternion(axes);
-        Quat::from_components(q.components().map(Dd::hi)).into()
+        q.map(Dd::hi).into()
     }
 
     /// Which principal moments are equal.
@@ -187,7 +187,7 @@ impl Inertia {
         if self.is_along_principal_axes() {
             return Ok(along);
         }
-        let frame = UnitQuaternion::from(Quat::from_components(self.frame.components().map(Dd::hi)));
+        let frame = UnitQuaternion::from(self.frame.map(Dd::hi));
         let axes = frame.to_rotation_matrix();
         let turned = axes.matrix() * along.tensor * axes.matrix().transpose();
         Self::from_tensor((turned + turned.transpose()) * 0.5)

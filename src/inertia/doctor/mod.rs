@@ -194,10 +194,11 @@ pub fn diagnose(tensor: Matrix3<f64>, evidence: &Evidence) -> Result<Diagnosis, 
     let accepted = if broken { f64::INFINITY } else { evidence.oddness(&tensor, ORDINARY) - 1.0 };
     // from zeros nothing can be told
     let candidates = if is_zero { Vec::new() } else { causes::candidates(&tensor, evidence) };
+    let explains =
+        |corrected: &Matrix3<f64>| check_tensor(corrected).is_ok() && evidence.misfit(corrected).is_none();
     let mut causes: Vec<Explanation> = candidates
         .into_iter()
-        .filter(|(_, corrected, _)| SIZES.contains(&corrected.amax()))
-        .filter(|(_, corrected, _)| check_tensor(corrected).is_ok() && evidence.misfit(corrected).is_none())
+        .filter(|(_, corrected, _)| SIZES.contains(&corrected.amax()) && explains(corrected))
         .map(|(cause, corrected, rareness)| {
             let cost = rareness + evidence.oddness(&corrected, 0.0);
             Explanation { cause, corrected, cost }
@@ -205,8 +206,7 @@ pub fn diagnose(tensor: Matrix3<f64>, evidence: &Evidence) -> Result<Diagnosis, 
         .filter(|explanation| explanation.cost < accepted)
         .collect();
     // no rarer than any other: the twin says so
-    let mirrored = twin::contradiction(&tensor, evidence)
-        .filter(|(_, corrected)| check_tensor(corrected).is_ok() && evidence.misfit(corrected).is_none());
+    let mirrored = twin::contradiction(&tensor, evidence).filter(|(_, corrected)| explains(corrected));
     if let Some((axis, corrected)) = mirrored {
         let cost = evidence.oddness(&corrected, 0.0);
         causes.push(Explanation { cause: Cause::MirroredTwin { axis }, corrected, cost });

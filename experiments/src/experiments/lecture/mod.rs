@@ -284,7 +284,7 @@ fn free_motion(moments: [f64; 3], omega: Vector3<f64>) -> Result<FreeMotion, Err
 fn derivative(t: f64, f: impl Fn(Dd) -> Vec3<Dd>) -> Vector3<f64> {
     let h = Dd::of(libm::exp2(-30.0));
     let slope = (f(Dd::of(t) + h) - f(Dd::of(t) - h)) * (Dd::ONE / (h * 2.0));
-    Vec3(slope.0.map(Dd::hi)).into()
+    slope.map(Dd::hi).into()
 }
 
 /// Second derivative at `t`, likewise.
@@ -292,7 +292,7 @@ fn second_derivative(t: f64, f: impl Fn(Dd) -> Vec3<Dd>) -> Vector3<f64> {
     let h = Dd::of(libm::exp2(-24.0));
     let t = Dd::of(t);
     let sum = f(t + h) + f(t - h) - f(t) * Dd::of(2.0);
-    Vec3((sum * (Dd::ONE / (h * h))).0.map(Dd::hi)).into()
+    (sum * (Dd::ONE / (h * h))).map(Dd::hi).into()
 }
 
 #[cfg(test)]

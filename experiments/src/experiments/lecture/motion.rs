@@ -248,7 +248,7 @@ fn omega(body: &Body, momentum: Vec3<Dd>) -> Vec3<Dd> {
 }
 
 fn double(v: Vec3<Dd>) -> V {
-    Vec3(v.0.map(Dd::hi)).into()
+    v.map(Dd::hi).into()
 }
 
 fn rotating_frame(s: &mut Statements) -> Result<(), Error> {
