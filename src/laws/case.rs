@@ -2,10 +2,10 @@
 
 use std::sync::OnceLock;
 
-use super::LawsError;
-use super::fields::{OfTheVertical, Pushed};
 use nalgebra::Vector3;
 
+use super::LawsError;
+use super::fields::{OfTheVertical, Pushed};
 use crate::body::{Body, Clock, Force, Point, Problem, State, Time, Wheel};
 use crate::flow::FreeMotion;
 use crate::inertia::Inertia;

@@ -49,11 +49,9 @@ pub(super) fn against(
     exponents: Range<u32>,
 ) -> Result<Vec<Finding>, LawsError> {
     let errors = halvings(subject, exponents)?;
-    let attitude = |error: &Halving| error.attitude_error;
-    let momentum = |error: &Halving| error.momentum_error;
     Ok(vec![
-        slopes(subject.problem(), Quantity::Attitude, order, &errors, attitude),
-        slopes(subject.problem(), Quantity::Momentum, order, &errors, momentum),
+        slopes(subject.problem(), Quantity::Attitude, order, &errors, |error| error.attitude_error),
+        slopes(subject.problem(), Quantity::Momentum, order, &errors, |error| error.momentum_error),
     ])
 }
 
@@ -97,21 +95,17 @@ fn within_tolerance(subject: &Subject<'_>) -> Result<Vec<Finding>, LawsError> {
     let case = subject.case;
     let errors = halvings(subject, 6..7)?;
     let tolerance = subject.method.tolerance().filter(|_| !subject.is_to_rounding());
-    let most = match tolerance {
-        None if subject.claims.to_doubles => OF_DOUBLES,
-        None => EXACT,
+    let (most, claim) = match tolerance {
+        None if subject.claims.to_doubles => (OF_DOUBLES, format!("to {}", short(OF_DOUBLES))),
+        None => (EXACT, "exact".into()),
         Some(tolerance) => {
             let mut step = subject.method.prepare_dd(Clock::new(case.span / 64.0), &case.body)?;
             step.steps(&mut case.start.clone(), 64);
-            tolerance * step.work().map_or(1.0, |work| work.accepted as f64)
+            let most = tolerance * step.work().map_or(1.0, |work| work.accepted as f64);
+            (most, format!("to {tolerance:e}"))
         }
     };
     let error = largest(errors.iter().flat_map(|error| [error.attitude_error, error.momentum_error]));
-    let claim = match tolerance {
-        None if subject.claims.to_doubles => format!("to {}", short(OF_DOUBLES)),
-        None => "exact".into(),
-        Some(tolerance) => format!("to {tolerance:e}"),
-    };
     let finding = Finding::new(subject.problem(), Law::Order, Quantity::State, claim);
     let finding = finding.judged(true, error, most, most);
     let needlessly = tolerance.is_some() && error <= 1e-6 * most;

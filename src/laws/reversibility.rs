@@ -7,7 +7,6 @@ use super::subject::Subject;
 use super::symmetry::returned;
 use super::words::Law;
 use crate::body::{Clock, Point, Problem};
-use crate::num::Dd;
 
 /// Where 25 steps there and 25 with the momentum reversed lead; nothing of motions under a torque or with
 /// wheels.
@@ -16,12 +15,10 @@ pub(super) fn measure(subject: &Subject<'_>) -> Result<Vec<super::Finding>, Laws
         return Ok(Vec::new());
     }
     let h = subject.telling_step(0.125);
-    let reversed = |x: &Point<Dd>| Point::new(x.attitude, -x.momentum_body);
     let mut x = subject.case.start;
     for _ in 0..2 {
-        x = Point::new(x.attitude, x.momentum_body);
         subject.method.prepare_dd(Clock::new(h), &subject.case.body)?.steps(&mut x, 25);
-        x = reversed(&x);
+        x = Point::new(x.attitude, -x.momentum_body);
     }
     Ok(vec![returned(subject, Law::Reversibility, &x)])
 }

@@ -9,15 +9,12 @@ use crate::method::AnyMethod;
 /// Prepares a step in both precisions.
 pub(super) fn measure(method: &dyn AnyMethod, case: &Case) -> Finding {
     let clock = Clock::new(0.125);
-    let prepared = method
-        .prepare_f64(clock, &case.body)
-        .map(|_| ())
-        .and_then(|()| method.prepare_dd(clock, &case.body).map(|_| ()));
+    let in_doubles = method.prepare_f64(clock, &case.body);
+    let prepared = in_doubles.and_then(|_| method.prepare_dd(clock, &case.body).map(|_| ()));
     let claimed = method.claims(case.problem()).is_some();
     let finding = Finding::new(case.problem(), Law::Takes, Quantity::Method, yes(claimed));
     match (claimed, prepared) {
-        (true, Ok(())) => finding.verdict(Verdict::Holds),
-        (false, Err(_)) => finding.verdict(Verdict::Holds),
+        (true, Ok(())) | (false, Err(_)) => finding.verdict(Verdict::Holds),
         (true, Err(error)) => finding.verdict(Verdict::False).because(error.to_string()),
         (false, Ok(())) => finding.verdict(Verdict::Unclaimed),
     }

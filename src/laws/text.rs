@@ -76,9 +76,9 @@ impl FromStr for Report {
             Some((_, line)) => Ok(line),
             None => Err(ReportError { line: text.lines().count() + 1, found: String::new(), rule }),
         };
-        let head = next("it should be the head of a report, polhode laws 1")?;
+        let rule = "it should be the head of a report, polhode laws 1";
+        let head = next(rule)?;
         if head != HEAD {
-            let rule = "it should be the head of a report, polhode laws 1";
             return Err(ReportError { line: 1, found: head.into(), rule });
         }
         let mut report = Report::new(next("it should be a name")?);

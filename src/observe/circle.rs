@@ -71,12 +71,13 @@ fn turned([a, b]: [Dd; 2], [c, d]: [Dd; 2]) -> [Dd; 2] {
 
 #[cfg(test)]
 mod tests {
+    use nalgebra::Matrix3;
+
     use super::*;
     use crate::body::{Body, Force, Orbit, Point};
     use crate::inertia::Inertia;
     use crate::observe::Monitor;
     use crate::rotation::{Quat, Vec3};
-    use nalgebra::Matrix3;
 
     /// Against double-double, point by point, at steps in any order and in blocks of any length, with the gravitational parameter and without.
     #[test]
