@@ -56,6 +56,7 @@ pub struct Record {
     /// File and name of each column that was not read.
     unused: Vec<(String, String)>,
 }
+
 impl Record {
     /// From times (s) and angular velocities (rad/s, sensor axes).
     ///
@@ -88,6 +89,7 @@ impl Record {
             },
         )
     }
+
     /// From rows of a file, called `file` in messages.
     ///
     /// # Errors
@@ -256,12 +258,7 @@ impl Record {
     pub fn span(&self, (start, end): (f64, f64)) -> Record {
         let mut cut = self.of_none();
         cut.findings.extend(self.findings.iter().filter(|(t, _)| (start..=end).contains(t)));
-        for s in &self.segments {
-            let (a, b) = (s.times.partition_point(|&t| t < start), s.times.partition_point(|&t| t <= end));
-            if a < b {
-                cut.segments.push(s.part(a..b));
-            }
-        }
+        cut.segments.extend(self.segments.iter().filter_map(|s| s.between(start, end)));
         cut
     }
 
@@ -278,13 +275,8 @@ impl Record {
         let mut cut = self.of_none();
         for (segment, start, end) in spans {
             let Some(s) = self.segments.get(segment) else { continue };
-            let inside = |t: &f64| (start..=end).contains(t);
-            let low = s.times.partition_point(|&t| t < start);
-            let high = s.times.partition_point(|&t| t <= end);
-            if low < high {
-                cut.segments.push(s.part(low..high));
-            }
-            cut.findings.extend(self.findings.iter().filter(|(t, _)| inside(t)));
+            cut.segments.extend(s.between(start, end));
+            cut.findings.extend(self.findings.iter().filter(|(t, _)| (start..=end).contains(t)));
         }
         cut
     }

@@ -176,22 +176,22 @@ impl Segment {
         }
     }
 
-    /// Some of its samples, next to each other.
-    pub(super) fn part(&self, range: Range<usize>) -> Segment {
-        Segment {
+    /// Its samples from `start` to `end`, s, both included; `None` where there are none.
+    pub(super) fn between(&self, start: f64, end: f64) -> Option<Segment> {
+        let range = self.times.partition_point(|&t| t < start)..self.times.partition_point(|&t| t <= end);
+        if range.is_empty() {
+            return None;
+        }
+        let breaks = self.breaks.iter().filter(|k| range.start < **k && **k < range.end);
+        Some(Segment {
             source: self.source.clone(),
             times: self.times[range.clone()].to_vec(),
             rates: self.rates[range.clone()].to_vec(),
             lines: self.lines[range.clone()].to_vec(),
             inputs: self.inputs.as_ref().map(|inputs| inputs.of(range.clone())),
             rate_unit: self.rate_unit,
-            breaks: self
-                .breaks
-                .iter()
-                .filter(|k| range.start < **k && **k < range.end)
-                .map(|k| k - range.start)
-                .collect(),
-        }
+            breaks: breaks.map(|k| k - range.start).collect(),
+        })
     }
 
     /// Whether a break lies behind sample `a`, and not behind `b`, a later one.

@@ -101,6 +101,7 @@ pub(super) fn places(times: &[f64]) -> Vec<f64> {
 pub(super) fn spikes(places: &[f64], rates: &[Vector3<f64>]) -> Vec<usize> {
     let samples = Samples { places, rates };
     let mut scores = Scores::new(samples);
+    let around = |i: usize, reach: usize| i.saturating_sub(reach)..(i + reach + 1).min(rates.len());
     // where the motion is too fast for the sampling, all samples deviate
     let stands_out = |scores: &Scores, i: usize| {
         if !scores.may_be_far(i) {
@@ -110,8 +111,7 @@ pub(super) fn spikes(places: &[f64], rates: &[Vector3<f64>]) -> Vec<usize> {
         if !own.is_far() {
             return false;
         }
-        let around = i.saturating_sub(NEIGHBOURS)..(i + NEIGHBOURS + 1).min(rates.len());
-        let mut near: Vec<f64> = around.map(|k| scores.at(k).middle).collect();
+        let mut near: Vec<f64> = around(i, NEIGHBOURS).map(|k| scores.at(k).middle).collect();
         median(&mut near).is_some_and(|near| own.middle > FAR * near)
     };
     let among = |range: Range<usize>| range.filter(|&i| stands_out(&scores, i)).collect::<Vec<usize>>();
@@ -120,7 +120,6 @@ pub(super) fn spikes(places: &[f64], rates: &[Vector3<f64>]) -> Vec<usize> {
     suspects.extend(after);
     let mut left = vec![true; if suspects.is_empty() { 0 } else { rates.len() }];
     let mut found = Vec::new();
-    let around = |i: usize, reach: usize| i.saturating_sub(reach)..(i + reach + 1).min(rates.len());
     while let Some(worst) = (0..suspects.len())
         .max_by(|&a, &b| scores.at(suspects[a]).first.total_cmp(&scores.at(suspects[b]).first))
     {
@@ -355,15 +354,17 @@ mod tests {
         spikes(&places(&times), rates)
     }
 
+    /// Samples of a slow motion with noise, 100 a second.
+    fn slow(count: u32, seed: u64) -> Vec<Vector3<f64>> {
+        let mut random = Random::new(seed);
+        let mut rate =
+            |t: f64| Vector3::new(libm::sin(t), libm::cos(1.3 * t), 0.2) + random.normal_vector() * 1e-2;
+        (0..count).map(|i| rate(0.01 * f64::from(i))).collect()
+    }
+
     #[test]
     fn spikes_are_found_and_samples_beside_them_kept() {
-        let mut random = Random::new(3);
-        let mut rates: Vec<Vector3<f64>> = (0..2000)
-            .map(|i| {
-                let t = 0.01 * f64::from(i);
-                Vector3::new(libm::sin(t), libm::cos(1.3 * t), 0.2) + random.normal_vector() * 1e-2
-            })
-            .collect();
+        let mut rates = slow(2000, 3);
         assert_eq!(evenly(&rates).len(), 0);
         let at = [3, 500, 501, 505, 1200, 1996];
         for i in at {
@@ -374,13 +375,7 @@ mod tests {
 
     #[test]
     fn spikes_beside_each_other_are_found_at_every_distance_and_sign() {
-        let mut random = Random::new(4);
-        let still: Vec<Vector3<f64>> = (0..200)
-            .map(|i| {
-                let t = 0.01 * f64::from(i);
-                Vector3::new(libm::sin(t), libm::cos(1.3 * t), 0.2) + random.normal_vector() * 1e-2
-            })
-            .collect();
+        let still = slow(200, 4);
         for (apart, size) in (1..6).flat_map(|apart| [(apart, 0.5), (apart, -0.5)]) {
             let mut rates = still.clone();
             rates[100].y += 0.5;
