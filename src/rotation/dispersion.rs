@@ -51,10 +51,9 @@ impl Dispersion {
         let [a, b, c, d, e, f, g, h, i, j] = products.map(|sum| sum / count);
         let (_, vectors) = eigen([[a, b, c, d], [b, e, f, g], [c, f, h, i], [d, g, i, j]]);
         let first = Quat::from_components(vectors[3]).normalized();
-        let mean = if first.w < 0.0 { first.map(|x| -x) } else { first };
+        let mean = if first.w < 0.0 { -first } else { first };
 
-        let angles = attitudes.iter().map(|q| rotation_angle(mean, *q));
-        let mut angles: Vec<f64> = angles.collect();
+        let mut angles: Vec<f64> = attitudes.iter().map(|q| rotation_angle(mean, *q)).collect();
         let [squares] = sum(&angles, |angle| [angle * angle]);
         angles.sort_unstable_by(f64::total_cmp);
 
@@ -160,7 +159,7 @@ mod tests {
         for (arm, length) in arms.iter().zip(lengths) {
             for sign in [1.0, -1.0] {
                 let q = about(mean(), arm.map(|x| x / 9.0 * length * sign));
-                attitudes.push(if sign > 0.0 { q } else { q.map(|x| -x) }); // q and −q are one attitude
+                attitudes.push(if sign > 0.0 { q } else { -q }); // q and −q are one attitude
             }
         }
         let spread = Dispersion::of(&attitudes).unwrap();

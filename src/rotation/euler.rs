@@ -120,7 +120,7 @@ impl EulerSequence {
         let rate = rates.map(Dd::of);
         let after_second = self.turn(1, angles).rotate_back(Vec3::unit(i) * rate[0]);
         let after_third = self.turn(2, angles).rotate_back(after_second + Vec3::unit(j) * rate[1]);
-        Vec3((after_third + Vec3::unit(k) * rate[2]).0.map(Dd::hi)).into()
+        (after_third + Vec3::unit(k) * rate[2]).map(Dd::hi).into()
     }
 
     /// The rates, rad/s, at which these angles change under an angular velocity in body axes.

@@ -33,10 +33,7 @@ impl Run {
     /// As [`advance_to`](Self::advance_to); [`RunError::Time`] of a time before the start, [`RunError::Past`] of one that
     /// the run has passed.
     pub fn at(&mut self, t: f64) -> Result<Sample, RunError> {
-        let (steps, later) = match Place::of(self.clock, t)? {
-            Place::At(steps) => (steps, Dd::ZERO),
-            Place::Behind { steps, later, .. } => (steps, later),
-        };
+        let (steps, later) = Place::of(self.clock, t)?.parts();
         if steps < self.point.steps() {
             let reached = self.clock.at(self.point.steps()).seconds();
             return Err(RunError::Past { asked: t, reached });

@@ -72,10 +72,7 @@ impl Run {
             .into());
         }
         intervals(begun.seconds(), end, spacing)?;
-        let (last, rest) = match Place::of(self.clock, end)? {
-            Place::At(steps) => (steps, Dd::ZERO),
-            Place::Behind { steps, later, .. } => (steps, later),
-        };
+        let (last, rest) = Place::of(self.clock, end)?.parts();
         let looks = (step / spacing).ceil().max(1.0);
         search.begin::<RunError>(begun.dd(), &self.body.leave(&self.reading))?;
         while !search.has_ended() && (self.point.steps() < last || rest != Dd::ZERO) {

@@ -34,8 +34,7 @@ impl Phases {
         let mut switches = Vec::new();
         for time in times.into_iter().filter(|time| (time - clock.start) * clock.step > 0.0) {
             let (steps, later) = match Place::of(clock, time) {
-                Ok(Place::At(steps)) => (steps, Dd::ZERO),
-                Ok(Place::Behind { steps, later, .. }) => (steps, later),
+                Ok(place) => place.parts(),
                 // no run comes so far
                 Err(ScheduleError::TooMany { .. }) => break,
                 Err(_) => return Err(StepError::NotATime { t: time }),

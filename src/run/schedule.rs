@@ -55,6 +55,14 @@ impl Place {
             None => Err(ScheduleError::NotAscending { t, before: start }),
         }
     }
+
+    /// The whole steps, and how long after the last of them, s.
+    pub(super) fn parts(self) -> (u64, Dd) {
+        match self {
+            Place::At(steps) => (steps, Dd::ZERO),
+            Place::Behind { steps, later, .. } => (steps, later),
+        }
+    }
 }
 
 /// Why times cannot be reached by steps.
