@@ -7,6 +7,7 @@ use nalgebra::{DMatrix, DVector, Matrix3, SMatrix, SVector, UnitQuaternion, Vect
 
 use crate::likelihood::descent::Levels;
 use crate::likelihood::motion::{Motion, Moved, Start};
+use crate::likelihood::sums::fill;
 use crate::likelihood::track::{ALL, COMMON, Model, OWN, Track};
 use crate::physical::coordinates::tensor;
 use crate::thresholds::likelihood::PANEL;
@@ -212,11 +213,7 @@ fn add(
     outwards(&motion, &inverse, (0..split).rev().filter(used), &track.times, &mut sample)?;
 
     let mut own = matrix.fixed_view::<OWN, OWN>(0, 0).into_owned();
-    for k in 0..OWN {
-        if own[(k, k)] == 0.0 {
-            own[(k, k)] = 1.0;
-        }
-    }
+    fill(own.as_mut_slice(), OWN);
     let own = own.cholesky()?;
     let mixed = matrix.fixed_view::<OWN, { WIDTH - OWN }>(0, OWN).into_owned();
     let rest =

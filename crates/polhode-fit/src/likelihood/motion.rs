@@ -44,7 +44,8 @@ pub(crate) struct Motion {
 impl Motion {
     /// `None` where a moment is not positive, or a number not finite.
     pub(crate) fn new(x: &Coordinates, start: &Start, drag: f64) -> Option<Motion> {
-        let (moments, mut matrix) = eigen(tensor(x));
+        let inertia = tensor(x);
+        let (moments, mut matrix) = eigen(inertia);
         if matrix.determinant() < 0.0 {
             matrix.column_mut(2).neg_mut();
         }
@@ -56,7 +57,6 @@ impl Motion {
             let (i, j) = ENTRIES[row];
             matrix.column(i).dot(&(basis(k) * matrix.column(j)))
         });
-        let inertia = tensor(x);
         Some(Motion { motion, drag, inertia, inverse: inertia.try_inverse()?, axes, matrix, entries })
     }
 
@@ -102,6 +102,9 @@ fn clock(k: f64, t: f64) -> (f64, f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::physical::coordinates::coordinates;
+    use polhode::num::Random;
+    use polhode::rotation::Vec3;
 
     /// The series meets the closed form where they take turns, and the motion is that of the equation with drag.
     #[test]
@@ -125,10 +128,6 @@ mod tests {
         let turn: Vector3<f64> = (before.attitude.conjugate() * after.attitude).logarithm().into();
         assert!((turn / (2.0 * h) - here.rate).norm() < 1e-6);
     }
-
-    use crate::physical::coordinates::coordinates;
-    use polhode::num::Random;
-    use polhode::rotation::Vec3;
 
     /// Against differences of the motion itself, also of tensors outside of the law and of a sphere.
     #[test]

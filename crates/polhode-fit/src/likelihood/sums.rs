@@ -153,7 +153,7 @@ impl Reduced {
 }
 
 /// A one on the diagonal in place of each zero.
-fn fill(square: &mut [f64], size: usize) {
+pub(crate) fn fill(square: &mut [f64], size: usize) {
     for k in 0..size {
         let entry = &mut square[k * (size + 1)];
         if *entry == 0.0 {

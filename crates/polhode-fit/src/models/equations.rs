@@ -77,10 +77,7 @@ impl Equations {
 
     /// Rows that stand for those of each segment, with the columns of the errors and then `own`, the columns of the estimate.
     pub(crate) fn with_errors(&self, own: &[Column]) -> Option<Vec<Vec<f64>>> {
-        let place = |column: &Column| {
-            let torques_on = self.columns.iter().enumerate().skip(self.errors);
-            torques_on.filter(|(_, other)| other.is_alike(column)).map(|(k, _)| k).next()
-        };
+        let place = |own: &Column| (self.errors..self.columns.len()).find(|&k| self.columns[k].is_alike(own));
         let own = own.iter().map(place).collect::<Option<Vec<usize>>>()?;
         let last = self.columns.len()..self.columns.len() + 6;
         let kept: Vec<usize> = (0..self.errors).chain(own).chain(last.clone()).collect();

@@ -128,18 +128,17 @@ impl Free {
         let levels = Levels { attitude: noise, rate: 0.0 };
         let turn_between = read.largest_turn;
         let not_free = |residual| PoseFault::NotFree { residual, noise: Some(noise), turn: turn_between };
-        let moved = |drag| Some(Moved::new(follow(&tracks, first, turn, levels, drag)?));
-        let found = with_torque(settings.torque, moved).ok_or_else(|| not_free(1.0))?;
-        let again = |tracks: &[Track]| {
+        let search = |tracks: &[Track]| {
             let moved = |drag| Some(Moved::new(follow(tracks, first, turn, levels, drag)?));
             with_torque(settings.torque, moved)
         };
-        let (found, misread) = without_error_of_rates(&tracks, found, again);
+        let found = search(&tracks).ok_or_else(|| not_free(1.0))?;
+        let (found, misread) = without_error_of_rates(&tracks, found, search);
         let tracks = match &misread {
             Some(error) => error.taken_out(&tracks),
             None => tracks,
         };
-        let (found, moving) = with_moving_axes(&tracks, found, again);
+        let (found, moving) = with_moving_axes(&tracks, found, search);
         let Found { moved, torque, gain, without, models } = found;
         let Moved { followed, alternatives } = moved;
         let steady = steady_within_noise(&followed);

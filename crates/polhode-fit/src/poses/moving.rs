@@ -65,11 +65,12 @@ fn turned_back(track: &Track, turn: Vector3<f64>, is_of_rates: bool) -> Track {
     let span = track.times.last().zip(track.times.first()).map_or(1.0, |(last, first)| last - first);
     let by = |t: &f64| Quat::exponential(Vec3::from(turn * (t / span)));
     let mut back = track.clone();
-    for (k, t) in track.times.iter().enumerate() {
-        match is_of_rates {
-            true => back.rates.iter_mut().skip(k).take(1).for_each(|w| *w = by(t).rotate((*w).into()).into()),
-            false => back.attitudes.iter_mut().skip(k).take(1).for_each(|q| *q = *q * by(t).conjugate()),
-        }
+    if is_of_rates {
+        let rates = back.rates.iter_mut().zip(&track.times);
+        rates.for_each(|(w, t)| *w = by(t).rotate((*w).into()).into());
+    } else {
+        let attitudes = back.attitudes.iter_mut().zip(&track.times);
+        attitudes.for_each(|(q, t)| *q = *q * by(t).conjugate());
     }
     back
 }

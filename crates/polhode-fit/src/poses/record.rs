@@ -255,7 +255,7 @@ impl Poses {
         fn attitudes(poses: &Poses) -> Vec<&[Quat<f64>]> {
             poses.segments.iter().map(|s| &s.attitudes[..]).collect()
         }
-        let key = |q: &Quat<f64>| [q.w, q.v.0[0], q.v.0[1], q.v.0[2]].map(f64::to_bits);
+        let key = |q: &Quat<f64>| q.components().map(f64::to_bits);
         shared(&attitudes(self), &attitudes(other), key)
     }
 

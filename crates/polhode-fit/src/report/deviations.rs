@@ -95,11 +95,11 @@ mod tests {
         let mut told = told(0.0);
         (1..7).for_each(|k| told.root[(0, k)] = 0.0);
         let of = [Dissipation { place: 0, name: "drag" }];
-        let mut at = |deviations: f64| {
-            told.centre[0] = -deviations / 1e3;
+        let mut at = |below: f64| {
+            told.centre[0] = -below / 1e3;
             let nearest = nearest(&told, &[], &of).unwrap();
             assert_eq!(nearest.active.len(), 1);
-            deviations_of(&told, &of, &nearest)
+            deviations(&told, &[3, 8], &[], &of, &nearest).unwrap()
         };
         let near = at(1.0);
         let [(3, drag), (8, other)] = near.held[..] else { panic!("{:?}", near.held) };
@@ -111,9 +111,5 @@ mod tests {
         let ratio = near.on_face.norm_squared() / far.free.norm_squared();
         assert!((ratio - 1.0).abs() < 0.2, "{ratio}");
         assert_eq!(near.free, far.free);
-    }
-
-    fn deviations_of(told: &Normal, of: &[Dissipation], nearest: &Nearest) -> Deviations {
-        deviations(told, &[3, 8], &[], of, nearest).unwrap()
     }
 }
