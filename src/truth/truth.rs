@@ -369,8 +369,7 @@ impl Truth {
     #[must_use]
     pub fn exchanged_energy_error(&self, worst: &Errors) -> Option<f64> {
         let linear = self.body.linear_potential::<Dd>().filter(|_| self.body.problem() == Problem::Linear)?;
-        let vertical = Vec3([Dd::ZERO, Dd::ZERO, Dd::ONE]);
-        let height = |look: &Known| look.point.attitude.rotate_back(vertical).dot(linear.moment).hi();
+        let height = |look: &Known| look.point.attitude.rotate_back(Vec3::unit(2)).dot(linear.moment).hi();
         let (low, high) = self
             .looks
             .iter()

@@ -1,5 +1,6 @@
 //! Dates: the civil calendar and Julian dates.
 
+use core::ops::RangeInclusive;
 use core::str::FromStr;
 
 use thiserror::Error;
@@ -207,9 +208,7 @@ fn day(text: &str) -> Option<Result<(i64, &str), &'static str>> {
     if parts.next().is_some() {
         return None;
     }
-    let number = |digits: &str| -> Option<i64> {
-        (digits.len() <= 4 && digits.bytes().all(|b| b.is_ascii_digit())).then(|| digits.parse().ok())?
-    };
+    let number = |text: &str| whole(text, 1..=4);
     let (year, month, day) = match MONTHS.iter().position(|name| second.eq_ignore_ascii_case(name)) {
         Some(month) => (number(third)?, month as i64 + 1, number(first)?),
         None if first.len() == 4 => (number(first)?, number(second)?, number(third)?),
@@ -224,6 +223,12 @@ fn day(text: &str) -> Option<Result<(i64, &str), &'static str>> {
         return Some(Err("the month has no such day"));
     }
     Some(Ok((since_1970, rest)))
+}
+
+/// A number that is written in so many digits and nothing else.
+fn whole(text: &str, digits: RangeInclusive<usize>) -> Option<i64> {
+    let is_whole = digits.contains(&text.len()) && text.bytes().all(|b| b.is_ascii_digit());
+    text.parse().ok().filter(|_| is_whole)
 }
 
 /// Of the Gregorian calendar, also before 1582: whole years from March on, so that the leap day is the last of a year.
@@ -255,12 +260,7 @@ fn time_of_day(text: &str) -> Result<Clock, &'static str> {
         None => (text, None),
     };
     let mut parts = clock.splitn(3, ':');
-    let count = |digits: Option<&str>, most: i64| {
-        digits
-            .filter(|digits| (1..=2).contains(&digits.len()) && digits.bytes().all(|b| b.is_ascii_digit()))
-            .and_then(|digits| digits.parse::<i64>().ok())
-            .filter(|count| *count <= most)
-    };
+    let count = |text: Option<&str>, most: i64| whole(text?, 1..=2).filter(|count| *count <= most);
     let hours = count(parts.next(), 23).ok_or("hours run from 0 to 23")?;
     let minutes = count(parts.next(), 59).ok_or("minutes run from 0 to 59")?;
     let seconds = match parts.next() {
@@ -285,11 +285,7 @@ fn offset(text: &str) -> Result<i64, &'static str> {
         None => (digits, "00"),
     };
     // of fewer digits it would be open which of them are hours
-    let of_two = |digits: &str| {
-        let is_pair = digits.len() == 2 && digits.bytes().all(|b| b.is_ascii_digit());
-        digits.parse::<i64>().ok().filter(|_| is_pair)
-    };
-    let (Some(hours), Some(minutes)) = (of_two(hours), of_two(minutes)) else {
+    let (Some(hours), Some(minutes)) = (whole(hours, 2..=2), whole(minutes, 2..=2)) else {
         return Err("an offset is written +hh:mm, +hhmm or +hh");
     };
     if hours > 23 || minutes > 59 {

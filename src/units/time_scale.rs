@@ -1,8 +1,7 @@
 //! Time scales: UTC with its leap seconds, TAI, TT and TDB.
 
-use crate::num::{Dd, Precise, Real};
-
 use super::date::{DAY, days_since_1970, julian_of_day};
+use crate::num::{Dd, Precise, Real};
 
 /// What a date counts in.
 ///
