@@ -3,10 +3,14 @@
 //! Up to π/4 a polynomial alone, without a branch: the turns of a splitting step are mostly smaller. Up to 2²⁰
 //! n π/2 is subtracted first in four parts (W. J. Cody, W. Waite, Software manual for the elementary functions,
 //! 1980), so that the rest is right also beside the zeros; above, `libm` does it.
+//!
+//! What is generic here has the digits of `f64` in every scalar: a benchmark counts on a scalar of its own which operations of `f64` wait
+//! for each other.
 #![doc = include_str!("accuracy/trig.md")]
 
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_4};
 
+use super::Real;
 use super::error_free::two_sum;
 
 // Interpolation on [0, (π/4)²] of (sin x − x)/x³ and (cos x − 1 + x²/2)/x⁴ in powers of x², made by
@@ -45,13 +49,15 @@ const ROUNDER: f64 = 6_755_399_441_055_744.0; // 1.5 · 2⁵²
 #[inline]
 #[must_use]
 pub fn sin_cos(x: f64) -> (f64, f64) {
-    if x.abs() <= FRAC_PI_4 { kernel::<false>(x, 0.0) } else { reduced(x) }
+    if x.abs() <= FRAC_PI_4 { sin_cos_moderate(x) } else { reduced(x) }
 }
 
 /// Sine and cosine of `x` radians, |x| ≤ π/4: as [`sin_cos`], without a branch.
+#[doc(hidden)]
 #[inline(always)]
-pub(crate) fn sin_cos_moderate(x: f64) -> (f64, f64) {
-    kernel::<false>(x, 0.0)
+#[must_use]
+pub fn sin_cos_moderate<S: Real>(x: S) -> (S, S) {
+    kernel::<false, S>(x, S::of(0.0))
 }
 
 /// `sin x` and `1 − cos x` of `x` radians; NaN unless `x` is finite. The second is without cancellation up to |x| = π/4; next to a
@@ -73,12 +79,13 @@ pub fn sin_versine(x: f64) -> (f64, f64) {
 }
 
 /// The same of |x| ≤ π/4, without a branch.
+#[doc(hidden)]
 #[inline(always)]
 #[must_use]
-pub(crate) fn sin_versine_moderate(x: f64) -> (f64, f64) {
+pub fn sin_versine_moderate<S: Real>(x: S) -> (S, S) {
     let z = x * x;
     let z2 = z * z;
-    (x + x * z * polynomial(z, z2, SIN), 0.5 * z - z2 * polynomial(z, z2, COS))
+    (x + x * z * polynomial(z, z2, SIN), S::of(0.5) * z - z2 * polynomial(z, z2, COS))
 }
 
 /// The largest angle of [`sin_versine_small`], rad.
@@ -88,34 +95,36 @@ pub const SMALL: f64 = 0.03125;
 /// 2⁻⁵⁸.
 #[inline(always)]
 #[must_use]
-pub fn sin_versine_small(x: f64) -> (f64, f64) {
+pub fn sin_versine_small<S: Real>(x: S) -> (S, S) {
     let z = x * x;
-    (x + x * z * sine_small(z), 0.5 * z - z * z * cosine_small(z))
+    (x + x * z * sine_small(z), S::of(0.5) * z - z * z * cosine_small(z))
 }
 
 /// `sin x / x` and `cos x` of the angle x with the square `z`, x ≤ [`SMALL`], by the same polynomials.
+#[doc(hidden)]
 #[inline(always)]
-pub(crate) fn sinc_cos_small(z: f64) -> (f64, f64) {
-    (1.0 + z * sine_small(z), cos_small(z))
+#[must_use]
+pub fn sinc_cos_small<S: Real>(z: S) -> (S, S) {
+    (S::of(1.0) + z * sine_small(z), cos_small(z))
 }
 
 /// `(sin x / x − 1)/z`, z = x².
 #[inline(always)]
-fn sine_small(z: f64) -> f64 {
-    (z * (1.0 / 120.0) - 1.0 / 6.0) - z * z * (1.0 / 5040.0)
+fn sine_small<S: Real>(z: S) -> S {
+    (z * S::of(1.0 / 120.0) - S::of(1.0 / 6.0)) - z * z * S::of(1.0 / 5040.0)
 }
 
 #[inline(always)]
-fn cos_small(z: f64) -> f64 {
-    let half = 0.5 * z;
-    let c = 1.0 - half;
-    c + ((1.0 - c) - half + z * z * cosine_small(z))
+fn cos_small<S: Real>(z: S) -> S {
+    let (half, one) = (S::of(0.5) * z, S::of(1.0));
+    let c = one - half;
+    c + ((one - c) - half + z * z * cosine_small(z))
 }
 
 /// `(cos x − 1 + z/2)/z²`, z = x².
 #[inline(always)]
-fn cosine_small(z: f64) -> f64 {
-    (1.0 / 24.0 - z * (1.0 / 720.0)) + z * z * (1.0 / 40320.0)
+fn cosine_small<S: Real>(z: S) -> S {
+    (S::of(1.0 / 24.0) - z * S::of(1.0 / 720.0)) + z * z * S::of(1.0 / 40320.0)
 }
 
 #[inline(never)]
@@ -127,7 +136,7 @@ fn reduced(x: f64) -> (f64, f64) {
     let n = shifted - ROUNDER;
     let (r, e1) = two_sum(x - n * HALF_PI[0], -n * HALF_PI[1]);
     let (r, e2) = two_sum(r, -n * HALF_PI[2]);
-    let (s, c) = kernel::<true>(r, (e1 + e2) - n * HALF_PI[3]);
+    let (s, c) = kernel::<true, _>(r, (e1 + e2) - n * HALF_PI[3]);
     match shifted.to_bits() & 3 {
         0 => (s, c),
         1 => (c, -s),
@@ -138,24 +147,26 @@ fn reduced(x: f64) -> (f64, f64) {
 
 /// Sine and cosine of x + tail for |x| ≤ π/4, the tail no more than a few units in its last place.
 #[inline(always)]
-fn kernel<const TAIL: bool>(x: f64, tail: f64) -> (f64, f64) {
+fn kernel<const TAIL: bool, S: Real>(x: S, tail: S) -> (S, S) {
     let z = x * x;
     let z2 = z * z;
     let mut s = x * z * polynomial(z, z2, SIN);
-    let half = 0.5 * z;
-    let c = 1.0 - half;
-    let mut rest = ((1.0 - c) - half) + z2 * polynomial(z, z2, COS);
+    let (half, one) = (S::of(0.5) * z, S::of(1.0));
+    let c = one - half;
+    let mut rest = ((one - c) - half) + z2 * polynomial(z, z2, COS);
     if TAIL {
-        s += tail * c;
-        rest -= tail * x;
+        s = s + tail * c;
+        rest = rest - tail * x;
     }
     (x + s, c + rest)
 }
 
 /// Estrin's scheme: a short chain of dependent operations.
 #[inline(always)]
-fn polynomial(z: f64, z2: f64, c: [f64; 6]) -> f64 {
-    (c[0] + z * c[1]) + z2 * ((c[2] + z * c[3]) + z2 * (c[4] + z * c[5]))
+fn polynomial<S: Real>(z: S, z2: S, c: [f64; 6]) -> S {
+    let [c0, c1, c2, c3, c4, c5] =
+        [S::of(c[0]), S::of(c[1]), S::of(c[2]), S::of(c[3]), S::of(c[4]), S::of(c[5])];
+    (c0 + z * c1) + z2 * ((c2 + z * c3) + z2 * (c4 + z * c5))
 }
 
 /// Sine and cosine of 2π (x + low), |x| ≤ ½, |low| ≤ 2⁻¹⁰: only x is reduced.
@@ -171,7 +182,7 @@ fn polynomial(z: f64, z2: f64, c: [f64; 6]) -> f64 {
 pub fn sin_cos_turns(x: f64, low: f64) -> (f64, f64) {
     let shifted = 4.0 * x + ROUNDER;
     let rest = (x - 0.25 * (shifted - ROUNDER)) + low;
-    let (s, c) = kernel::<false>(rest * core::f64::consts::TAU, 0.0);
+    let (s, c) = sin_cos_moderate(rest * core::f64::consts::TAU);
     let quadrant = shifted.to_bits() & 3;
     // without branches: the quadrant of a random phase cannot be predicted
     let odd = quadrant & 1 == 1;
