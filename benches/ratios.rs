@@ -1,7 +1,7 @@
 //! Time per step of the main methods over that of an RK4 written by hand, bursts in turn in one run, and beside it how many operations of
-//! a step wait for each other, counted on a scalar that knows for how many it has waited. No step is quicker than its chain, and one that
-//! takes twice as long is held back by something else. The RK4 is compiled the same way whatever the library is, so each of these has a
-//! column of the table:
+//! a step wait for each other, counted on a scalar that knows for how many it has waited. A step lasts at least about as long as its
+//! chain, and one that lasts twice as long is held back by something else. The RK4 is compiled the same way whatever the library is, so
+//! each of these has a column of the table:
 //!
 //! ```text
 //! cargo bench -p polhode-benches --bench ratios
