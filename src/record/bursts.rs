@@ -42,7 +42,7 @@ const OFF: f64 = 3.0;
 const MORE: usize = 2;
 const STEADY: f64 = 2.0;
 /// Median length of a vector of three normal components of variance 1.
-const MEDIAN: f64 = 1.538_172_254_455_254;
+const MEDIAN: f64 = 1.538_172_254_455_052;
 
 /// A burst.
 #[derive(Debug, PartialEq)]

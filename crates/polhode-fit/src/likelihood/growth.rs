@@ -15,7 +15,7 @@ use crate::thresholds::likelihood::{FIRST, HELD, OUTLIER, PULL, ROUNDS, SAME, SA
 use crate::thresholds::noise::LEAST;
 
 /// The median of |r| of three normal components, in their standard deviations.
-const MEDIAN: f64 = 1.538_172_254_455_036;
+const MEDIAN: f64 = 1.538_172_254_455_052;
 
 /// A model of the largest likelihood.
 pub(crate) struct Followed {
