@@ -126,7 +126,7 @@ impl Alternatives {
 }
 
 /// Some further columns beside those of the model.
-fn found(
+pub(crate) fn found(
     information: &DMatrix<f64>,
     gradient: &DVector<f64>,
     columns: core::ops::Range<usize>,

@@ -29,6 +29,7 @@ pub(crate) mod local;
 pub(crate) mod momentum;
 pub(crate) mod motion;
 pub(crate) mod profile;
+pub(crate) mod readings;
 pub(crate) mod sums;
 pub(crate) mod track;
 pub(crate) mod wheels;

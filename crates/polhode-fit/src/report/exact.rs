@@ -3,14 +3,18 @@
 use nalgebra::{Matrix3, Vector3};
 use polhode::rotation::Quat;
 
+use crate::columns::column::Column;
 use crate::columns::sets::torque_columns;
 use crate::error::FitError;
+use crate::likelihood::alternatives::Found;
 use crate::likelihood::choice::{Acting, left_out};
 use crate::likelihood::descent::{Levels, Problem};
 use crate::likelihood::growth::Followed;
 use crate::likelihood::profile::fall;
+use crate::likelihood::readings::beside;
 use crate::likelihood::sums::{Reduced, Sums};
 use crate::likelihood::track::{COMMON, Kind, Track};
+use crate::models::reading_error::{ReadingError, Units};
 use crate::models::weighed::spread;
 use crate::physical::coordinates::{Coordinates, Form, entries_of_coordinates};
 use crate::physical::face::Nearest;
@@ -26,16 +30,21 @@ use crate::report::estimate::{Estimate, Method, Residuals};
 use crate::report::likelihood::{Of, Told, absolute, identify, joined};
 use crate::report::mirror::{mirror_sigmas, mirrored};
 use crate::report::model::models;
+use crate::report::next_step::Origin;
 use crate::report::nuisance::{FittedTorque, Nuisance};
+use crate::report::parts::deviate_of_ratio;
 use crate::report::scale::{Noise, Scale, scale_of};
 use crate::report::segments::{SegmentSummary, WithoutSegment, to_shares};
 use crate::report::torque_free::{InvariantTrend, Whiteness};
+use crate::report::warning::Warning;
 use crate::report::warnings::{Doubts, of_likelihood, of_rates};
 use crate::settings::Settings;
 use crate::settings::known::Known;
 use crate::settings::torque::TorqueModel;
 use crate::signal::stretch::Stretch;
 use crate::thresholds::likelihood::{NARROW, PARTED};
+use crate::thresholds::noise::LEAST;
+use crate::thresholds::warnings::LEFT_OUT;
 
 /// What the samples say at one level of noise.
 struct Information {
@@ -149,8 +158,46 @@ pub(crate) fn report(
         outliers: outliers(free),
     };
     let beside = of_rates(free, settings.noise);
-    estimate.warnings = beside.into_iter().chain(of_likelihood(&estimate, &doubts)).collect();
+    let suspect = suspect(free, &rates, information.levels.rate);
+    let all = beside.into_iter().chain(of_likelihood(&estimate, &doubts)).chain(suspect);
+    estimate.warnings = all.collect();
     Ok(estimate)
+}
+
+/// The error of the sensor that rates without attitudes show by more than chance, where it explains more than a torque; of several what explains
+/// most. `rates` are those of the motion, and `level` is their noise, in units of the fit.
+///
+/// A constant torque that is part of the answer is none of the unknowns of the motion: beside it nothing is said.
+fn suspect(free: &Free, rates: &[Stretch], level: f64) -> Option<Warning> {
+    let Followed { model, tracks, dof, .. } = &free.followed;
+    if tracks.iter().any(Track::has_attitudes) || free.torque == Acting::Constant {
+        return None;
+    }
+    let units = Units { rms: free.read.unit, input: 0.0 };
+    let errors = ReadingError::all(rates);
+    let columns: Vec<Vec<Column>> = errors.iter().map(|error| error.columns(rates, units)).collect();
+    let all = beside(tracks, model, level.max(LEAST.sqrt()), &columns)?;
+    // more unknowns explain more in any case
+    let worth = |found: &Found| found.gain - found.values.len() as f64;
+    let torques = free.alternatives.iter().flat_map(|found| [found.drag.as_ref(), Some(&found.constant)]);
+    let most = torques.flatten().map(worth).fold(0.0, f64::max);
+    // the noise is told by the same readings
+    let is_rare = |found: &Found| {
+        let (count, squares) = (found.values.len() as f64, 2.0 * found.gain);
+        let ratio = (squares / count) / ((dof[1] - squares) / (dof[1] - count));
+        deviate_of_ratio(ratio, [count, dof[1] - count]) > LEFT_OUT
+    };
+    let each = errors.iter().zip(&columns).zip(&all);
+    let each = each.filter(|&(_, found)| worth(found) > most && is_rare(found));
+    let ((error, columns), found) = each.max_by(|a, b| worth(a.1).total_cmp(&worth(b.1)))?;
+    let size = found.values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    Some(Warning::LeftOut {
+        what: error.in_words(),
+        size: size * error.factor(units),
+        unit: columns.first().map_or("", |column| column.label().unit),
+        gain: found.gain,
+        origin: Origin::Sensor,
+    })
 }
 
 fn model_of(torque: Acting) -> TorqueModel {

@@ -114,6 +114,15 @@ pub(crate) fn quantile(dof: f64, z: f64) -> f64 {
     dof * root * root * root
 }
 
+/// The normal deviate that is exceeded as rarely as a ratio of two mean squares with these degrees of freedom.
+///
+/// Source: E. Paulson, Ann. Math. Stat. 13 (1942) 233.
+pub(crate) fn deviate_of_ratio(ratio: f64, dof: [f64; 2]) -> f64 {
+    let [above, below] = dof.map(|dof| 2.0 / (9.0 * dof));
+    let root = libm::cbrt(ratio);
+    ((1.0 - below) * root - (1.0 - above)) / (above + below * root * root).sqrt()
+}
+
 /// The change of each principal moment, along these axes, from one half of a record to the other that may go unseen: of a larger one, whatever
 /// else changes, the halves contradict each other in 999 of 1,000 records. `variance` as above.
 ///
@@ -291,6 +300,21 @@ mod tests {
             [(35.0, 4.753_424, 89.947), (35.0, 4.264_891, 82.640), (5.0, 4.264_891, 30.856)]
         {
             assert!((quantile(dof, z) / exact - 1.0).abs() < 0.04, "{}", quantile(dof, z));
+        }
+    }
+
+    /// A ratio of mean squares with 2 and n degrees of freedom exceeds r with the chance (1 + 2 r/n)^(−n/2); over many it is chi squared over its
+    /// number.
+    #[test]
+    fn a_ratio_of_mean_squares_is_as_rare_as_its_deviate() {
+        for n in [10.0, 40.0, 400.0] {
+            let ratio = 0.5 * n * (libm::pow(1e-4, -2.0 / n) - 1.0);
+            let deviate = deviate_of_ratio(ratio, [2.0, n]);
+            assert!((deviate / 3.719_016_485 - 1.0).abs() < 0.03, "{n}: {deviate}");
+        }
+        for (dof, z) in [(3.0, 3.7), (5.0, -0.5)] {
+            let deviate = deviate_of_ratio(quantile(dof, z) / dof, [dof, 1e12]);
+            assert!((deviate - z).abs() < 1e-9, "{dof}: {deviate}");
         }
     }
 

@@ -3,8 +3,8 @@
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::{inertia::Inertia, num::Random};
 use polhode_fit::{
-    Disturbances, FitError, Gyroscope, Method, Record, SensorPriors, Settings, Warning, fit, simulate,
-    simulate_with,
+    Contradiction, Disturbances, Estimate, FitError, Gyroscope, Method, NextStep, Origin, Record,
+    SensorPriors, Settings, Warning, fit, simulate, simulate_with,
 };
 
 /// Half a sample a second of a body that turns by two radians in between, as of a satellite's beacon: the likelihood on the exact motion.
@@ -90,6 +90,30 @@ fn a_step_that_is_given_is_noise_of_sparse_rates() {
             assert!(told.sigma_principal[k] > 2.0 * plain.sigma_principal[k]);
         }
     }
+}
+
+/// An offset that the motion of another tensor takes up for the most part is named, with its size, as it explains the record better than a torque.
+#[test]
+fn an_offset_of_sparse_rates_is_named() {
+    let of = |offset: f64| {
+        let gyroscope = Gyroscope::default().with_noise(0.01).with_offset(Vector3::repeat(offset));
+        let (times, rates) = beacon(&gyroscope);
+        fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap()
+    };
+    let named = |e: &Estimate| {
+        assert_eq!(e.method, Method::ExactMotion);
+        e.warnings.iter().find_map(|warning| match warning {
+            Warning::LeftOut { what, size, unit, origin, .. } => Some((*what, *size, *unit, *origin)),
+            _ => None,
+        })
+    };
+    assert_eq!(named(&of(0.0)), None);
+    let off = of(0.01);
+    let Some((what, size, unit, origin)) = named(&off) else { panic!("{:?}", off.warnings) };
+    assert_eq!((what, unit, origin), ("offsets of the sensor", "rad/s", Origin::Sensor));
+    assert!((0.005..0.025).contains(&size), "{size}");
+    let remedy = NextStep::FindCause(Contradiction::LeftOut { what, origin });
+    assert_eq!(off.next_steps().first(), Some(&remedy));
 }
 
 /// Errors of the sensor are fitted in the weak form alone: where only the likelihood on the exact motion has an answer, they are what is not told.
