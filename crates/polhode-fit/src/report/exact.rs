@@ -35,6 +35,7 @@ use crate::report::nuisance::{FittedTorque, Nuisance};
 use crate::report::parts::deviate_of_ratio;
 use crate::report::scale::{Noise, Scale, scale_of};
 use crate::report::segments::{SegmentSummary, WithoutSegment, to_shares};
+use crate::report::systematic::of_readings;
 use crate::report::torque_free::{InvariantTrend, Whiteness};
 use crate::report::warning::Warning;
 use crate::report::warnings::{Doubts, of_likelihood, of_rates};
@@ -101,6 +102,12 @@ pub(crate) fn report(
     let drag = drag.map(|drag| (drag.values[0] * free.read.unit, drag.sigmas[0] * free.read.unit));
     let slowed = information.torques.first().filter(|_| free.torque == Acting::Drag);
     let drag = slowed.map(|drag| (drag.value, drag.sigma)).or(drag);
+    // a constant torque, which is none of the unknowns of the motion, takes a part of an error
+    let systematic = if has_attitudes || free.torque == Acting::Constant {
+        Vec::new()
+    } else {
+        of_readings(&free.followed.tracks, &free.followed.model, &v, &moments.into(), free.read.unit)
+    };
     let mut estimate = Estimate {
         principal: moments.into(),
         sigma_principal,
@@ -135,7 +142,7 @@ pub(crate) fn report(
         models: models(&free.models, model_of(free.torque), None),
         reading_errors: Vec::new(),
         nuisances: Vec::new(),
-        systematic: Vec::new(),
+        systematic,
         prior: agreed,
         per_segment: summaries(free, &information),
         unexplained: None,

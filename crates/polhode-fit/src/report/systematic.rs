@@ -7,8 +7,10 @@ use crate::columns::column::Column;
 use crate::columns::rotor::Rotor;
 use crate::columns::sets::{magnet_columns, reported_errors, told_components, walk_columns};
 use crate::columns::wheel_axis::WheelAxis;
+use crate::likelihood::sums::{Reduced, Sums};
+use crate::likelihood::track::{Left, Model, Track};
 use crate::models::equations::Equations;
-use crate::physical::coordinates::{pair, tensor};
+use crate::physical::coordinates::{Coordinates, pair, tensor};
 use crate::report::nuisance::Systematic;
 use crate::signal::stretch::Stretch;
 use crate::solve::stacked::responses;
@@ -88,18 +90,14 @@ pub(crate) fn systematic(
     let Some(whitened) = equations.with_errors(&weak.columns) else { return Vec::new() };
     let rows: Vec<&[f64]> = whitened.iter().map(Vec::as_slice).collect();
     let Some(steps) = responses(&rows, &columns, errors, variance.sqrt()) else { return Vec::new() };
-    // of the principal moments and of the ratios, by a column of a given size
-    let changes = |k: usize, size: f64| -> [f64; 5] {
-        let step = steps[k] * size;
-        let change: [f64; 3] = core::array::from_fn(|k| pair(&axes[k], &axes[k]).dot(&step));
-        let ratio = |k: usize| (change[k] - change[2] * moments[k] / moments[2]) / moments[2];
-        [change[0], change[1], change[2], ratio(0), ratio(1)]
-    };
     let mut place = 0;
     let each = lines.into_iter().map(|line| {
         let begin = place;
         place += line.columns.len();
-        let of = line.columns.iter().enumerate().map(|(k, &(_, size))| changes(begin + k, size));
+        let of = line.columns.iter().enumerate().map(|(k, &(_, size))| {
+            let step = steps[begin + k] * size;
+            changes(&step, axes, moments)
+        });
         let of: Vec<[f64; 5]> = of.collect();
         let [a, b, c, d, e] = match of.as_slice() {
             [one] => *one,
@@ -109,6 +107,52 @@ pub(crate) fn systematic(
         Systematic { name, size, unit, principal: [a, b, c], ratios: [d, e] }
     });
     each.filter(|s| s.principal.iter().all(|v| v.is_finite())).collect()
+}
+
+/// The same of the sensor alone, of rates that were fitted on the exact motion.
+///
+/// With e the derivative of the readings with respect to an error, the estimate moves by what makes |G δ − e| least, G that of the motion.
+pub(crate) fn of_readings(
+    tracks: &[Track],
+    model: &Model,
+    axes: &[Vector3<f64>; 3],
+    moments: &[f64; 3],
+    rms: f64,
+) -> Vec<Systematic> {
+    let (columns, j) = (reported_errors(), tensor(&model.x));
+    let Some(inverse) = j.try_inverse() else { return Vec::new() };
+    let drag = model.drag.unwrap_or(0.0);
+    // of each error in each track
+    let mut all: Vec<Vec<Sums>> = vec![Vec::new(); columns.len()];
+    for (track, start) in tracks.iter().zip(&model.starts) {
+        let mut each = vec![Sums::zero(); columns.len()];
+        let seen = track.visit(model, start, f64::INFINITY, |left| {
+            let w = track.rates[left.sample] - left.residual;
+            let slope = inverse * (j * w).cross(&w) - w * drag;
+            for (sums, column) in each.iter_mut().zip(&columns) {
+                let change = column.effect().change_of_reading(&w, &slope, track.times[left.sample]);
+                sums.add(&Left { residual: change.unwrap_or_else(Vector3::zeros), ..*left }, 1.0);
+            }
+        });
+        if seen.is_none() {
+            return Vec::new();
+        }
+        all.iter_mut().zip(each).for_each(|(all, sums)| all.push(sums));
+    }
+    let line = |(column, sums): (&Column, &Vec<Sums>)| {
+        let (label, size) = (column.label(), column.effect().reported_size()?);
+        let step = Reduced::new(sums)?.step()?.common.fixed_rows::<5>(0) * (size / label.factor(rms));
+        let [a, b, c, d, e] = changes(&step, axes, moments);
+        Some(Systematic { name: label.name, size, unit: label.unit, principal: [a, b, c], ratios: [d, e] })
+    };
+    columns.iter().zip(&all).filter_map(line).collect()
+}
+
+/// The changes of the principal moments and of the ratios by a step.
+fn changes(step: &Coordinates, axes: &[Vector3<f64>; 3], moments: &[f64; 3]) -> [f64; 5] {
+    let change: [f64; 3] = core::array::from_fn(|k| pair(&axes[k], &axes[k]).dot(step));
+    let ratio = |k: usize| (change[k] - change[2] * moments[k] / moments[2]) / moments[2];
+    [change[0], change[1], change[2], ratio(0), ratio(1)]
 }
 
 #[cfg(test)]

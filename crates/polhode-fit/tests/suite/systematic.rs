@@ -4,8 +4,8 @@ use nalgebra::{Matrix3, Quaternion, UnitQuaternion, Vector3};
 use polhode::inertia::Inertia;
 use polhode::num::Random;
 use polhode_fit::{
-    Disturbances, Estimate, Gyroscope, Record, SensorPriors, Settings, TorqueModel, TorqueNoise, Warning,
-    fit, simulate_with,
+    Disturbances, Estimate, Gyroscope, Method, Record, SensorPriors, Settings, TorqueModel, TorqueNoise,
+    Warning, fit, simulate_with,
 };
 
 use crate::measured::{sampled, turned};
@@ -29,6 +29,25 @@ fn fitted(by: &Disturbances, gyroscope: &Gyroscope) -> Estimate {
     fit(&Record::from_samples(&times, &rates).unwrap(), &settings()).unwrap()
 }
 
+/// A sensor with the error of a line of the report, of this size; it has none of a wheel.
+fn with_error(name: &str, size: f64, right: &Gyroscope) -> Gyroscope {
+    let axis = ["x", "y", "z"].iter().position(|letter| name.ends_with(letter)).unwrap_or(0);
+    let (along, right) = (Vector3::ith(axis, size), right.clone());
+    // the true rate is the reading with the error added to its scale: the reading has it taken off
+    match name {
+        "scale" => right.with_scale(-size),
+        "misalignment_xy" => right.with_misalignment(Vector3::x() * (-size / 2.0)),
+        "misalignment_xz" => right.with_misalignment(Vector3::y() * (-size / 2.0)),
+        "misalignment_yz" => right.with_misalignment(Vector3::z() * (-size / 2.0)),
+        name if name.starts_with("scale_") => right.with_axis_scales(-along),
+        name if name.starts_with("offset_") => right.with_offset(along),
+        // a delay reads what was
+        name if name.starts_with("skew_") => right.with_skew(-along),
+        name if name.starts_with("wheel_") => right,
+        name => panic!("{name}"),
+    }
+}
+
 /// The change of the moments by fits of records with and without the error is the one that the report foresees.
 #[test]
 fn errors_change_the_moments_as_the_report_says() {
@@ -50,28 +69,8 @@ fn errors_change_the_moments_as_the_report_says() {
         // a tenth of it, so that the change is linear
         let size = 0.1 * line.size;
         let along = Vector3::ith(axis, size);
-        // the true rate is the reading with the error added to its scale: the reading has it taken off
-        let (by, gyroscope) = match line.name {
-            "scale" => (free.clone(), right.clone().with_scale(-size)),
-            "misalignment_xy" => {
-                (free.clone(), right.clone().with_misalignment(Vector3::x() * (-size / 2.0)))
-            }
-            "misalignment_xz" => {
-                (free.clone(), right.clone().with_misalignment(Vector3::y() * (-size / 2.0)))
-            }
-            "misalignment_yz" => {
-                (free.clone(), right.clone().with_misalignment(Vector3::z() * (-size / 2.0)))
-            }
-            name if name.starts_with("scale_") => (free.clone(), right.clone().with_axis_scales(-along)),
-            name if name.starts_with("offset_") => (free.clone(), right.clone().with_offset(along)),
-            // a delay reads what was
-            name if name.starts_with("skew_") => (free.clone(), right.clone().with_skew(-along)),
-            name if name.starts_with("wheel_") => {
-                (free.clone().with_wheel(along * squares.sqrt()), right.clone())
-            }
-            name => panic!("{name}"),
-        };
-        let with = fitted(&by, &gyroscope);
+        let wheel = if line.name.starts_with("wheel_") { along * squares.sqrt() } else { Vector3::zeros() };
+        let with = fitted(&free.clone().with_wheel(wheel), &with_error(line.name, size, &right));
         let largest = line.principal.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
         for k in 0..3 {
             let change = 10.0 * (with.principal[k] - exact.principal[k]);
@@ -97,6 +96,44 @@ fn errors_change_the_moments_as_the_report_says() {
     }
     // a scale, three of each axis, three angles, three offsets, two delays, three wheels
     assert_eq!(seen.len(), 15, "{seen:?}");
+}
+
+/// The same of rates that are too sparse for the weak form, for each error of the sensor.
+#[test]
+fn errors_change_the_moments_of_sparse_rates_as_the_report_says() {
+    let (noise, none) = (0.01, Disturbances::default());
+    let times: Vec<f64> = (0..124).map(|i| 0.65 * f64::from(i)).collect();
+    let body = Inertia::from_tensor(body()).unwrap();
+    let settings = Settings::default().with_torque(TorqueModel::None).with_noise(noise);
+    let fitted = |gyroscope: &Gyroscope| {
+        let rates = simulate_with(&body, START, &times, &none, gyroscope, &mut Random::new(8)).unwrap();
+        let e = fit(&Record::from_samples(&times, &rates).unwrap(), &settings).unwrap();
+        assert_eq!(e.method, Method::ExactMotion);
+        e
+    };
+    let right = Gyroscope::default().with_noise(noise);
+    let exact = fitted(&right);
+    // a scale, three of each axis, three angles, three offsets, two delays
+    assert_eq!(exact.systematic.len(), 12);
+    for line in &exact.systematic {
+        // small beside the noise, and far more than where the search ends
+        let part = if line.name.starts_with("skew") { 2.0 } else { 0.2 };
+        let with = fitted(&with_error(line.name, part * line.size, &right));
+        let largest = line.principal.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+        for k in 0..3 {
+            let change = (with.principal[k] - exact.principal[k]) / part;
+            let near = 0.05 * largest;
+            assert!((change - line.principal[k]).abs() < near, "{} {k}: {change:e} {line:?}", line.name);
+        }
+        for k in 0..2 {
+            let change = (with.ratios[k] - exact.ratios[k]) / part;
+            assert!(
+                (change - line.ratios[k]).abs() < 0.2 * largest,
+                "{} {k}: {change:e} {line:?}",
+                line.name
+            );
+        }
+    }
 }
 
 /// Rates of the body under the torque of a magnet along one of its axes in a field along one of the axes that it begins with.
