@@ -43,8 +43,13 @@ fn sparse_telemetry_goes_to_the_likelihood() {
 
 /// Of a body that turns by two thirds of a radian from one sample to the next.
 fn beacon(gyroscope: &Gyroscope) -> (Vec<f64>, Vec<Vector3<f64>>) {
+    beacon_every(0.65, gyroscope)
+}
+
+/// Of a body that turns by about one radian a second.
+fn beacon_every(interval: f64, gyroscope: &Gyroscope) -> (Vec<f64>, Vec<Vector3<f64>>) {
     let body = Inertia::from_moments([1.0, 2.0, 2.6]).unwrap();
-    let times: Vec<f64> = (0..124).map(|i| 0.65 * f64::from(i)).collect();
+    let times: Vec<f64> = (0..124).map(|i| interval * f64::from(i)).collect();
     let (omega, none) = (Vector3::new(0.3, 1.0, 0.4), Disturbances::default());
     let rates = simulate_with(&body, omega, &times, &none, gyroscope, &mut Random::new(8)).unwrap();
     (times, rates)
@@ -97,7 +102,7 @@ fn a_step_that_is_given_is_noise_of_sparse_rates() {
 fn an_offset_of_sparse_rates_is_named() {
     let of = |offset: f64| {
         let gyroscope = Gyroscope::default().with_noise(0.01).with_offset(Vector3::repeat(offset));
-        let (times, rates) = beacon(&gyroscope);
+        let (times, rates) = beacon_every(0.9, &gyroscope);
         fit(&Record::from_samples(&times, &rates).unwrap(), &Settings::default()).unwrap()
     };
     let named = |e: &Estimate| {
