@@ -251,8 +251,10 @@ impl<A> Splitting<A, Kicks> {
         };
         let stages: Vec<Stage> = flows.iter().map(stage).collect();
         let free = |stage: &Stage| Timed { begun: stage.begun, map: a(stage.length) };
-        let kick_by = |length, gradient| b(length).with_gradient(gradient, h, rotor);
-        let kick = |stage: &Stage| Timed { begun: stage.begun, map: kick_by(stage.length, stage.gradient) };
+        let kick = |stage: &Stage| {
+            let map = b(stage.length).with_gradient(stage.gradient, h, rotor);
+            Timed { begun: stage.begun, map }
+        };
         let opens = flows.first().is_some_and(|flow| flow.0 == Part::B);
         let behind = &stages[usize::from(opens)..];
         let (opening, closing) = (stages.first().filter(|_| opens), behind.as_chunks::<2>().1.first());
@@ -262,11 +264,11 @@ impl<A> Splitting<A, Kicks> {
             _ if !F::ACTS => Ends::OfA,
             Some((first, others)) if opens && closing.is_none() => Ends::B {
                 cycle: merged(first, others).map(|[a, b]| (free(&a), kick(&b))).collect(),
-                back: kick_by(-first.length, -first.gradient),
+                back: kick(&first.back()),
             },
             Some((first, others)) if !opens && closing.is_some() && exact => Ends::A {
                 cycle: merged(first, others).map(|[b, a]| (kick(&b), free(&a))).collect(),
-                back: a(-first.length),
+                back: free(&first.back()),
             },
             _ => Ends::Apart,
         };
@@ -280,6 +282,13 @@ struct Stage {
     begun: Dd,
     length: Dd,
     gradient: Dd,
+}
+
+impl Stage {
+    /// What takes it back, at the time that it is told.
+    fn back(&self) -> Self {
+        Stage { begun: Dd::ZERO, length: -self.length, gradient: -self.gradient }
+    }
 }
 
 /// The flows behind the first, in pairs, the last of them as long as both ends.

@@ -25,12 +25,13 @@ pub(super) enum Ends<A, B> {
     /// Nothing: the two flows are of different parts, or not exact.
     Apart,
     /// Two flows of A are one: the pairs of a step behind its first flow, and the flow that takes half of the last one back.
-    A { cycle: Vec<(Timed<B>, Timed<A>)>, back: A },
+    A { cycle: Vec<(Timed<B>, Timed<A>)>, back: Timed<A> },
     /// Two flows of B likewise.
-    B { cycle: Vec<(Timed<A>, Timed<B>)>, back: B },
+    B { cycle: Vec<(Timed<A>, Timed<B>)>, back: Timed<B> },
 }
 
-/// `n` steps of the maps of `cycle` in turn, which are counted. The point is one's own, so that what is inlined keeps it in registers.
+/// `n` steps of the maps of `cycle` in turn, which are counted. The point is one's own, so that what is inlined keeps it in registers;
+/// where each operation is a dozen nothing is, as that would gain nothing.
 #[inline]
 fn sweep<S: Real, P: Map<S>, Q: Map<S>>(
     cycle: &mut [(Timed<P>, Timed<Q>)],
@@ -42,8 +43,13 @@ fn sweep<S: Real, P: Map<S>, Q: Map<S>>(
     for _ in 0..n {
         let at = clock.at(moved.steps());
         for (p, q) in &mut *cycle {
-            p.apply_inlined(at, &mut moved);
-            q.apply_inlined(at, &mut moved);
+            if const { S::ROUNDOFF < f64::ROUNDOFF } {
+                p.apply(at, &mut moved);
+                q.apply(at, &mut moved);
+            } else {
+                p.apply_inlined(at, &mut moved);
+                q.apply_inlined(at, &mut moved);
+            }
         }
         moved.count_steps(1);
     }
