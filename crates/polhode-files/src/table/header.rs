@@ -6,7 +6,8 @@ use polhode::units::{RateUnit, TimeUnit};
 use super::flags::ColumnNames;
 use super::name::Name;
 use super::spellings::{
-    ANGLE_ENDINGS, NO_ENDINGS, Quantity, RATE_ENDINGS, SPELLINGS, direction, frame, is_id,
+    ANGLE_ENDINGS, NO_ENDINGS, Quantity, RATE_ENDINGS, SPELLINGS, direction, frame, is_id, is_of_message,
+    says_no_motion, says_rates,
 };
 use crate::error::Rule;
 
@@ -70,7 +71,7 @@ impl Header {
         counts_rows: bool,
     ) -> Result<Self, Rule> {
         let named = |(cell, meant): (&String, &String)| Name { text: cell.clone(), ..Name::of(meant) };
-        let names: Vec<Name> = cells.iter().zip(spelled).map(named).collect();
+        let mut names: Vec<Name> = cells.iter().zip(spelled).map(named).collect();
         let mut header = Header { time: flags.place("t", cells)?, ..Header::default() };
         header.time_is_named = header.time.is_some();
         header.id = match flags.place("id", cells)? {
@@ -93,6 +94,19 @@ impl Header {
                 header.time_unit = Some(TimeUnit::Seconds);
             }
         }
+        if header.time.is_none() {
+            // behind the name of its message, where it is the only one: `ATTITUDE.time_boot_ms`
+            let behind = |name: &Name| {
+                let own = Name::of(name.text.rsplit_once(['.', '/'])?.1);
+                (own.time_rank().is_some() && !own.is_counter()).then_some(own.letters)
+            };
+            let mut timed = (0..).zip(&names).filter_map(|(place, name)| Some((place, behind(name)?)));
+            let alone = timed.next().filter(|_| timed.next().is_none());
+            if let Some((place, letters)) = alone {
+                names[place].letters = letters;
+                header.time = Some(place);
+            }
+        }
         if header.time.is_none() && !counts_rows {
             return Err(Rule::Column("time".into(), cells.to_vec()));
         }
@@ -104,10 +118,7 @@ impl Header {
                 header.is_generalized = true;
                 bodies?
             }
-            None if wanted.is_empty() => {
-                let found = vec![Columns::of(groups(&names)?, &names)?];
-                if found.iter().any(Columns::is_empty) { owned(&names)?.unwrap_or(found) } else { found }
-            }
+            None if wanted.is_empty() => bodies(&names)?,
             None => vec![Columns::of(wanted, &names)?],
         };
         header.names = names;
@@ -145,9 +156,12 @@ impl Header {
     /// Names of columns that are not read and hold the attitude of a body with a name of its own; none where there is none.
     pub(crate) fn second_attitude(&self) -> Vec<&str> {
         let others: Vec<Name> = self.others().map(|(_, name)| name.clone()).collect();
-        let bodies = owned(&others).ok().flatten().unwrap_or_default();
-        let places =
-            bodies.into_iter().find_map(|body| body.attitude).map_or(Vec::new(), |group| group.places);
+        // the angles that a message has beside its quaternion are no other attitude
+        let is_other = |body: &Columns| {
+            body.attitude.as_ref().is_some_and(|group| !(group.is_restated() && body.key().is_empty()))
+        };
+        let second = owned(&others).unwrap_or_default().into_iter().find(is_other);
+        let places = second.and_then(|body| body.attitude).map_or(Vec::new(), |group| group.places);
         places
             .into_iter()
             .filter_map(|place| self.others().nth(place))
@@ -210,31 +224,58 @@ impl Header {
         Ok(())
     }
 
-    /// Units that layouts of known programs have.
+    /// Units, and places of the scalar, that layouts of known programs define.
     fn imply(&mut self) {
-        let Some((time, rates)) = self.time.zip(self.bodies.first().and_then(|body| body.rates.as_ref()))
-        else {
-            return;
+        let Some(time) = self.time.map(|place| &self.names[place]) else { return };
+        let body = self.bodies.first();
+        let name = |group: Option<&Group>| group.map(|group| &self.names[group.places[0]]);
+        let (rates, attitude) =
+            (body.and_then(|body| body.rates.as_ref()), body.and_then(|body| body.attitude.as_ref()));
+        let (stem, of_rates) = (rates.map_or("", |rates| rates.stem), name(rates));
+        let has = |letters: &str| self.names.iter().any(|name| name.letters == letters);
+        let is_timestamp = time.letters == "timestamp";
+        let is_crazyflie =
+            is_timestamp && of_rates.is_some_and(|name| name.text.trim().eq_ignore_ascii_case("gyro.x"));
+        let is_mavlink = of_rates.is_some_and(|name| name.letters.ends_with("rollspeed"));
+        // what other programs have no column of
+        let is_of_px4 = || {
+            has("timestampsample")
+                || has("deltaqreset0")
+                || is_mavlink && self.names.iter().any(|name| name.text.trim() == "q[0]")
         };
-        let (stem, first) = (rates.stem, self.names[rates.places[0]].text.trim());
-        let is_crazyflie = first.eq_ignore_ascii_case("gyro.x") && self.names[time].letters == "timestamp";
-        self.time_unit = self.time_unit.or(match self.names[time].letters.as_str() {
-            // the logs of PX4 and the messages of ROS
-            "timestamp" | "timestampsample" if ["gyrorad", "xyz"].contains(&stem) => {
-                Some(TimeUnit::Microseconds)
-            }
-            "time" | "fieldheaderstamp" if stem == "fieldangularvelocity" => Some(TimeUnit::Nanoseconds),
+        let is_px4 = (is_timestamp || time.letters == "timestampsample")
+            && (["gyrorad", "xyz"].contains(&stem) || has("timestamp") && is_of_px4());
+        let is_ros = of_rates.or(name(attitude)).is_some_and(|name| name.letters.starts_with("field"));
+        let time_unit = match time.letters.as_str() {
+            _ if is_px4 => Some(TimeUnit::Microseconds),
+            "time" | "fieldheaderstamp" if is_ros => Some(TimeUnit::Nanoseconds),
             // the explorer of Betaflight's logs
             "time" if stem == "gyroadc" => Some(TimeUnit::Microseconds),
             _ if is_crazyflie => Some(TimeUnit::Milliseconds),
             _ => None,
-        });
+        };
+        // q0 of Xsens, and q1 of MAVLink's ATTITUDE_QUATERNION and of ArduPilot
+        let is_scalar_first = is_px4
+            || is_mavlink
+            || time.text.trim().ends_with("TimeUS")
+            || attitude.is_some_and(|attitude| attitude.stem == "quatq");
+        self.time_unit = self.time_unit.or(time_unit);
         self.rate_unit = match stem {
             "gyroadc" => Some(RateUnit::DegreesPerSecond),
             "gyrorad" => Some(RateUnit::RadiansPerSecond),
             _ if is_crazyflie => Some(RateUnit::DegreesPerSecond),
+            _ if is_mavlink => Some(RateUnit::RadiansPerSecond),
             _ => None,
         };
+        for attitude in self.bodies.iter_mut().filter_map(|body| body.attitude.as_mut()) {
+            // a group without a stem is named by a flag
+            if is_scalar_first && attitude.quantity == Quantity::Numbered && !attitude.stem.is_empty() {
+                attitude.quantity = Quantity::Quaternion;
+            }
+            if is_mavlink && attitude.is_restated() && attitude.units.iter().all(Option::is_none) {
+                attitude.units = vec![Some("rad".into()); 3];
+            }
+        }
     }
 }
 
@@ -244,6 +285,16 @@ impl Group {
         let units = vec![None; places.len()];
         let (frame, direction, angle_axes) = (None, None, None);
         Group { quantity, places, units, frame, direction, angle_axes, stem: "", yields: false }
+    }
+
+    /// Whether these are roll, pitch and yaw or the like, which many programs write beside the quaternion of which they are.
+    fn is_restated(&self) -> bool {
+        self.quantity == Quantity::Angles && self.stem.is_empty()
+    }
+
+    /// Whether it is a quaternion.
+    fn is_quaternion(&self) -> bool {
+        matches!(self.quantity, Quantity::Quaternion | Quantity::Numbered)
     }
 }
 
@@ -264,6 +315,7 @@ impl Columns {
             match slot {
                 None => *slot = Some(group),
                 Some(_) if group.yields => {}
+                Some(before) if before.is_quaternion() && group.is_restated() => {}
                 Some(before) if before.yields => *slot = Some(group),
                 Some(before) => {
                     let first = |group: &Group| names[group.places[0]].text.clone();
@@ -277,6 +329,27 @@ impl Columns {
             columns.rates = None;
         }
         Ok(columns)
+    }
+
+    /// With what exactly one of `others` has, where it has none itself.
+    fn filled(self, others: &[Columns]) -> Self {
+        let only = |of: fn(&Columns) -> Option<&Group>| {
+            let mut having = others.iter().filter_map(of);
+            having.next().filter(|_| having.next().is_none()).cloned()
+        };
+        Columns {
+            label: self.label,
+            attitude: self.attitude.or_else(|| only(|other| other.attitude.as_ref())),
+            rates: self.rates.or_else(|| only(|other| other.rates.as_ref())),
+            momentum: self.momentum.or_else(|| only(|other| other.momentum.as_ref())),
+        }
+    }
+
+    /// The words of the label that are not those of messages: the name of the body, of messages alone none.
+    fn key(&self) -> String {
+        let lower = self.label.as_deref().unwrap_or_default().to_lowercase();
+        let words = lower.split(|c: char| !c.is_alphanumeric());
+        words.filter(|word| !word.is_empty() && !is_of_message(word)).collect::<Vec<_>>().join(" ")
     }
 }
 
@@ -317,7 +390,13 @@ fn groups(names: &[Name]) -> Result<Vec<Group>, Rule> {
                 let units =
                     places.iter().zip(&targets).map(|(&k, target)| names[k].unit_behind(target, endings));
                 let behind = || frame(targets[0].strip_prefix(stem)?.strip_prefix('x')?);
-                let frame = if stem.is_empty() { None } else { frame(stem).or_else(behind) };
+                let frame = match stem {
+                    // MAVLink's rates are p, q and r about the axes of the body, and no derivatives of roll, pitch and yaw: "body
+                    // frame roll / phi angular speed" (common.xml, HIL_STATE_QUATERNION)
+                    "" if targets[0] == "rollspeed" => Some(Frame::Body),
+                    "" => None,
+                    _ => frame(stem).or_else(behind),
+                };
                 let (units, direction) = (units.collect(), direction(stem));
                 let (quantity, yields) = (spelling.quantity, spelling.yields);
                 let angle_axes = (targets[0] == "roll").then_some([0, 1, 2]);
@@ -329,42 +408,99 @@ fn groups(names: &[Name]) -> Result<Vec<Group>, Rule> {
     Ok(found)
 }
 
-/// Bodies whose names stand in front of their quantities, as in the states of Drake and in topics: `model_body_qw`,
-/// `/imu/orientation/w`; those that have an attitude.
-fn owned(names: &[Name]) -> Result<Option<Vec<Columns>>, Rule> {
-    // any mark may be the end of the name of the body
+/// The bodies of a header: that whose columns have no owner, with what messages have of it; else those of the owners.
+fn bodies(names: &[Name]) -> Result<Vec<Columns>, Rule> {
+    let bare = Columns::of(groups(names)?, names)?;
+    if !bare.is_empty() {
+        let mut messages = owned(names).unwrap_or_default();
+        messages.retain(|columns| columns.key().is_empty());
+        return Ok(vec![bare.filled(&messages)]);
+    }
+    let mut sets: Vec<(String, Vec<Columns>)> = Vec::new();
+    for columns in owned(names)? {
+        let key = columns.key();
+        match sets.iter_mut().find(|(known, _)| *known == key) {
+            Some((_, set)) => set.push(columns),
+            None => sets.push((key, vec![columns])),
+        }
+    }
+    let mut found = Vec::new();
+    for (_, mut set) in sets {
+        let has_quaternion =
+            set.iter().filter_map(|columns| columns.attitude.as_ref()).any(Group::is_quaternion);
+        for columns in &mut set {
+            columns.attitude =
+                columns.attitude.take().filter(|group| !(has_quaternion && group.is_restated()));
+        }
+        // several messages of one body, as pose and twist of an odometer
+        let attitudes = set.iter().filter(|columns| columns.attitude.is_some()).count();
+        let rates = set.iter().filter(|columns| columns.rates.is_some()).count();
+        if attitudes <= 1 && rates <= 1 {
+            let first = set.iter().find(|columns| columns.attitude.is_some()).or(set.first());
+            let label = first.and_then(|columns| columns.label.clone());
+            found.push(Columns { label, ..Columns::default() }.filled(&set));
+        } else {
+            found.extend(set);
+        }
+    }
+    if found.iter().any(|body| body.attitude.is_some()) {
+        found.retain(|body| body.attitude.is_some());
+    } else if let [first, second, ..] = &found[..] {
+        let name = |body: &Columns| {
+            body.rates.as_ref().map_or("", |group| names[group.places[0]].text.as_str()).to_string()
+        };
+        return Err(Rule::OneGroup(Quantity::Rates.words(), name(first), name(second)));
+    }
+    if let [alone] = &mut found[..] {
+        alone.label = None;
+    }
+    Ok(if found.is_empty() { vec![bare] } else { found })
+}
+
+/// Columns whose owner, a body, a topic or a message, stands in front of their quantity: `model_body_qw`, `/imu/orientation/w`,
+/// `field.pose.pose.orientation.w`. Without an attitude, rates must be called so.
+fn owned(names: &[Name]) -> Result<Vec<Columns>, Rule> {
+    // any mark may be the end of the name of the owner
     let mut parts: Vec<(usize, &str, &str)> = Vec::new();
     for (place, name) in names.iter().enumerate() {
         let text = name.text.as_str();
-        let ends = text.match_indices(['_', '.', '/']);
+        let ends = text.match_indices(['_', '.', '/']).filter(|(at, _)| *at > 0);
         parts.extend(ends.map(|(at, _)| (place, &text[..at], &text[at + 1..])));
     }
     let mut owners: Vec<&str> = parts.iter().map(|(_, owner, _)| *owner).collect();
     owners.sort_unstable();
     owners.dedup();
-    let mut bodies = Vec::new();
+    let mut found: Vec<Columns> = Vec::new();
     for owner in owners {
         let own = parts.iter().filter(|part| part.1 == owner);
         let (places, own): (Vec<usize>, Vec<Name>) =
             own.map(|(place, _, quantity)| (*place, Name::of(quantity))).unzip();
         let mut columns = Columns::of(groups(&own)?, &own)?;
-        if columns.attitude.as_ref().is_some_and(|attitude| !attitude.yields) {
-            let groups = [&mut columns.attitude, &mut columns.rates, &mut columns.momentum];
-            for place in groups.into_iter().flatten().flat_map(|group| &mut group.places) {
-                *place = places[*place];
-            }
-            bodies.push(Columns { label: Some(owner.to_string()), ..columns });
+        // of `angular.x` the axes are no quantity
+        let is_axes = |group: &Group| group.stem.is_empty() && own[group.places[0]].letters == "x";
+        columns.rates = columns.rates.filter(|group| !is_axes(group));
+        let groups = [&mut columns.attitude, &mut columns.rates, &mut columns.momentum];
+        for place in groups.into_iter().flatten().flat_map(|group| &mut group.places) {
+            *place = places[*place];
+        }
+        // `a_euler_angle_x` is `euler_angle_x` of a and `angle_x` of a_euler
+        let is_new = |group: &Group| {
+            let mut known = found.iter().flat_map(|columns| [&columns.attitude, &columns.rates]);
+            !known.any(|known| known.as_ref().is_some_and(|known| known.places == group.places))
+        };
+        let attitude = columns.attitude.filter(|group| !group.yields && is_new(group));
+        let is_said = |group: &Group| {
+            let is_unit = |unit: &Option<String>| unit.as_deref().and_then(RateUnit::named).is_some();
+            let said = says_rates(&names[group.places[0]].letters) || group.units.iter().all(is_unit);
+            said && is_new(group) && !says_no_motion(owner)
+        };
+        let rates = columns.rates.filter(|group| attitude.is_some() || is_said(group));
+        let momentum = columns.momentum.filter(|_| attitude.is_some());
+        if attitude.is_some() || rates.is_some() {
+            found.push(Columns { label: Some(owner.to_string()), attitude, rates, momentum });
         }
     }
-    // `a_euler_angle_x` is `euler_angle_x` of a and `angle_x` of a_euler
-    bodies.dedup_by(|later: &mut Columns, before: &mut Columns| {
-        let places = |body: &Columns| body.attitude.as_ref().map(|group| group.places.clone());
-        places(later) == places(before)
-    });
-    if let [alone] = &mut bodies[..] {
-        alone.label = None;
-    }
-    Ok((!bodies.is_empty()).then_some(bodies))
+    Ok(found)
 }
 
 /// Free joints of MuJoCo: `qpos` holds three positions and a quaternion, scalar first, for each; `qvel` three velocities and
@@ -459,6 +595,116 @@ mod tests {
             [(Quaternion, vec![1, 2, 3, 4]), (Rates, vec![5, 6, 7])]
         );
         assert_eq!(found("t,a,b"), []);
+    }
+
+    /// `stem` before each of the `parts`.
+    fn each(stem: &str, parts: &str) -> String {
+        parts.split(' ').map(|part| format!(",{stem}{part}")).collect()
+    }
+
+    /// What stands before a quantity may be a message of the one body: then its columns are those without it.
+    #[test]
+    fn quantities_of_messages_are_those_of_one_body() {
+        use Quantity::{Angles, Numbered, Quaternion, Rates};
+        let both = |attitude: Quantity, places: &[usize], first: usize| {
+            vec![(attitude, places.to_vec()), (Rates, vec![first, first + 1, first + 2])]
+        };
+        let (wxyz, xyzw, three) = (&[1, 2, 3, 4][..], &[4, 1, 2, 3][..], &[1, 2, 3][..]);
+        for (attitude, parts, rates, of_rates, expected) in [
+            ("field.orientation.", "x y z w", "field.angular_velocity.", "x y z", both(Quaternion, xyzw, 5)),
+            (
+                "field.pose.pose.orientation.",
+                "x y z w",
+                "field.twist.twist.angular.",
+                "x y z",
+                both(Quaternion, xyzw, 5),
+            ),
+            ("pose.pose.orientation.", "x y z w", "twist.twist.angular.", "x y z", both(Quaternion, xyzw, 5)),
+            (
+                "/odom/pose/pose/orientation/",
+                "x y z w",
+                "/odom/twist/twist/angular/",
+                "x y z",
+                both(Quaternion, xyzw, 5),
+            ),
+            (
+                "/imu/data/orientation/",
+                "x y z w",
+                "/imu/data/angular_velocity/",
+                "x y z",
+                both(Quaternion, xyzw, 5),
+            ),
+            (
+                "vehicle_attitude/q.",
+                "00 01 02 03",
+                "vehicle_angular_velocity/xyz.",
+                "00 01 02",
+                both(Numbered, wxyz, 5),
+            ),
+            ("Attitude_Quaternion_", "x y z w", "IMU_AngularRate_", "x y z", both(Quaternion, xyzw, 5)),
+            (
+                "transform.rotation.",
+                "x y z w",
+                "rigidbody.angularVelocity.",
+                "x y z",
+                both(Quaternion, xyzw, 5),
+            ),
+            ("stateEstimate.q", "x y z w", "gyro.", "x y z", both(Quaternion, xyzw, 5)),
+            ("base_orn_", "x y z w", "base_ang_vel_", "x y z", both(Quaternion, xyzw, 5)),
+            (
+                "motionQuaternion",
+                "X(R) Y(R) Z(R) W(R)",
+                "motionRotationRate",
+                "X(rad/s) Y(rad/s) Z(rad/s)",
+                both(Quaternion, xyzw, 5),
+            ),
+            (
+                "ATTITUDE.",
+                "roll pitch yaw",
+                "ATTITUDE.",
+                "rollspeed pitchspeed yawspeed",
+                both(Angles, three, 4),
+            ),
+            (
+                "/fdm/jsbsim/attitude/",
+                "phi-rad theta-rad psi-rad",
+                "/fdm/jsbsim/velocities/",
+                "p-rad_sec q-rad_sec r-rad_sec",
+                both(Angles, three, 4),
+            ),
+        ] {
+            let header = format!("time{}{}", each(attitude, parts), each(rates, of_rates));
+            assert_eq!(found(&header), expected, "{header}");
+        }
+        // rates alone, behind any name
+        assert_eq!(found(&format!("t{}", each("ICM20948.gyro.", "x y z"))), [(Rates, vec![1, 2, 3])]);
+        // what a program derives from the quaternion of its message is no second body
+        let derived = each("/imu/data/orientation/", "x y z w roll pitch yaw");
+        assert_eq!(found(&format!("t{derived}")), [(Quaternion, vec![4, 1, 2, 3])]);
+    }
+
+    /// What may be another quantity, or that of another body, is not read.
+    #[test]
+    fn names_that_can_mean_two_things_are_not_read() {
+        for (first, second) in [
+            // an angular velocity in a Twist, an acceleration in an Accel
+            ("field.angular.", ""),
+            ("field.linear_acceleration.", ""),
+            ("imu0.angular_velocity.", "imu1.angular_velocity."),
+            ("imu.bias.gyro.", ""),
+            ("target.omega.", ""),
+            ("accel_g_", ""),
+            ("velocity_w_", ""),
+        ] {
+            let second = if second.is_empty() { String::new() } else { each(second, "x y z") };
+            assert_eq!(found(&format!("t{}{second}", each(first, "x y z"))), [], "{first}");
+        }
+        assert_eq!(found(&format!("t{}", each("vehicle_acceleration/xyz.", "00 01 02"))), []);
+        let q = each("q_", "w x y z");
+        for other in ["velocity_w_", "b_w_RS_S_", "box.omega."] {
+            let header = format!("t{q}{}", each(other, "x y z"));
+            assert_eq!(found(&header), [(Quantity::Quaternion, vec![1, 2, 3, 4])], "{header}");
+        }
     }
 
     #[test]

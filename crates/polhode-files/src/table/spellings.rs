@@ -50,9 +50,9 @@ const ENTRIES: &str = "11 12 13 21 22 23 31 32 33|00 01 02 10 11 12 20 21 22|xx 
 /// Without a stem.
 const NONE: &str = "-";
 
-/// `qrs` is of EuRoC; the last two say what the quaternion takes where.
-const QUATERNION: &str =
-    "q quat quaternion orientation attitude rotation rot qbn qib ep cquat cq qrs qbodytospace qspacetobody";
+/// `qrs` is of EuRoC, `quatq` of Xsens; the last two say what the quaternion takes where.
+const QUATERNION: &str = "q quat quaternion orientation orn attitude rotation rot qbn qib ep cquat cq qrs quatq \
+    motionquaternion qbodytospace qspacetobody";
 const MATRIX: &str = "r rot rotmat rotation dcm matrix mat m a c bn";
 const EULER: &str = "phi theta psi|roll pitch yaw|alpha beta gamma";
 
@@ -63,15 +63,17 @@ const RATES: &str = "w omega omegabody gyro gyr gyroscope g angularvelocity angu
     gyroskop gyroscoop giroscopio giroscópio giroskop żyroskop jiroskop γυροσκόπιο гироскоп 陀螺仪 ジャイロスコープ \
     자이로스코프 winkelgeschwindigkeit vitesseangulaire velocidadangular velocitàangolare wrss gy correctedgyro";
 
-/// Of logs that hold an angular velocity twice: as measured, and as the device has corrected it.
+/// Of logs that hold an angular velocity twice: as measured, and as the device has corrected it. The last is of ROS, where
+/// `angular` alone may be an acceleration (geometry_msgs/Accel).
 const RATES_OF_LOGS: &str = "rotationrate gyrorotation motionrotationrate gyrorad xyz gyroadc fieldangularvelocity \
-    imuangularvelocity imugyro sensorangularvelocity";
+    imuangularvelocity imugyro sensorangularvelocity twistangular";
 
 /// Axes with what they are of behind them, as in `wx_body`.
 const AXES_OF: &str = "xbody ybody zbody|xspace yspace zspace|xworld yworld zworld";
 
-/// The second is of OpenIMU.
-const RATES_WITHOUT_STEM: &str = "p q r|rollrate pitchrate yawrate|xaxis yaxis zaxis|xgyro ygyro zgyro|xgyr ygyr zgyr|\
+/// The second is of OpenIMU, the third of MAVLink and PX4.
+const RATES_WITHOUT_STEM: &str = "p q r|rollrate pitchrate yawrate|rollspeed pitchspeed yawspeed|xaxis yaxis zaxis|\
+    xgyro ygyro zgyro|xgyr ygyr zgyr|\
     xgyroscope ygyroscope zgyroscope|xrate yrate zrate|xangularvelocity yangularvelocity zangularvelocity";
 const MOMENTA: &str =
     "l angmom angularmomentum h momentum lbody hbody momentumbody lspace hspace momentumspace";
@@ -88,12 +90,15 @@ const fn yielding(quantity: Quantity, stems: &'static str, components: &'static 
 pub(crate) const SPELLINGS: &[Spelling] = &[
     spelling(Quantity::Quaternion, QUATERNION, LETTERS),
     spelling(Quantity::Numbered, QUATERNION, NUMBERS),
+    // arrays of PX4 as PlotJuggler names them: `vehicle_attitude/q.00`
+    spelling(Quantity::Numbered, "q", "00 01 02 03"),
     spelling(Quantity::Matrix, MATRIX, ENTRIES),
     spelling(Quantity::Rodrigues, "sigma sigmabn mrp", VECTOR),
     spelling(Quantity::Angles, "euler angle eulerangle eul", VECTOR),
     spelling(Quantity::Angles, NONE, EULER),
     spelling(Quantity::Rates, RATES, VECTOR),
     yielding(Quantity::Rates, RATES_OF_LOGS, VECTOR),
+    yielding(Quantity::Rates, "xyz gyrorad angularvelocity", "00 01 02"),
     yielding(Quantity::Rates, "w omega", AXES_OF),
     yielding(Quantity::Rates, NONE, RATES_WITHOUT_STEM),
     spelling(Quantity::Momentum, MOMENTA, VECTOR),
@@ -140,11 +145,37 @@ pub(crate) fn direction(stem: &str) -> Option<Direction> {
     }
 }
 
+/// Words of messages and topics: before a quantity they name no body.
+const MESSAGES: &str = "field msg message data pose twist transform rigidbody imu stateestimate attitude orientation rotation \
+    angular velocity velocities";
+
+/// Words before a rate that is none of a motion, or not the one that was.
+const NO_MOTION: &str = "acceleration accel acc bias offset error covariance variance std stddev sigma noise target setpoint \
+    desired des command cmd reference ref";
+
+/// Whether a word in lower case is one of messages.
+pub(crate) fn is_of_message(word: &str) -> bool {
+    MESSAGES.split_whitespace().any(|known| known == word)
+}
+
+/// Whether letters say that a quantity is an angular velocity.
+pub(crate) fn says_rates(letters: &str) -> bool {
+    let words = ["gyr", "angular", "angvel", "angrate", "omega", "rotationrate", "rollspeed", "rollrate"];
+    words.iter().any(|word| letters.contains(word))
+}
+
+/// Whether the words before a quantity say that it is of no motion.
+pub(crate) fn says_no_motion(owner: &str) -> bool {
+    let lower = owner.to_lowercase();
+    let mut words = lower.split(|c: char| !c.is_alphanumeric());
+    words.any(|word| NO_MOTION.split_whitespace().any(|known| known == word))
+}
+
 /// Names of times in the order of preference, with the unit that a name implies. Words for time are those of the languages
 /// that phyphox speaks.
 const TIMES: &str = "secondselapsed:s gyrotimestampsincereboot:s motiontimestampsincereboot:s timestampsincereboot:s \
-    timesincestartinms:ms t time zeit temps tiempo tempo tijd czas čas tid zaman χρόνος время 时间 時間 시간 simtime timestamp \
-    elapsed elapsedtime timestartup timestampunix millis:ms micros:us sampletimefine timestampsample fieldheaderstamp epoc \
+    timesincestartinms:ms t time timeboot zeit temps tiempo tempo tijd czas čas tid zaman χρόνος время 时间 時間 시간 \
+    simtime timestamp elapsed elapsedtime timestartup timestampunix millis:ms micros:us sampletimefine timestampsample fieldheaderstamp epoc \
     epoch jd:d mjd:d loggingtime datetime date timestep";
 
 /// Names of counters, which count samples and are times only with their rate.
@@ -158,10 +189,12 @@ const IDS: &str = "id body bodyid bodyname name link entity object";
 pub(crate) struct Endings(&'static str);
 
 pub(crate) const NO_ENDINGS: Endings = Endings("");
-pub(crate) const TIME_ENDINGS: Endings = Endings("ms:ms us:us ns:ns nanos:ns sec:s s:s");
+pub(crate) const TIME_ENDINGS: Endings =
+    Endings("ms:ms us:us ns:ns nanos:ns sec:s s:s msec:ms usec:us nsec:ns");
 pub(crate) const ANGLE_ENDINGS: Endings = Endings("deg:deg rad:rad");
 pub(crate) const RATE_ENDINGS: Endings = Endings(
-    "radpersec:rad/s radps:rad/s rads:rad/s degpersec:deg/s degps:deg/s degs:deg/s dps:deg/s rpm:rpm",
+    "radpersec:rad/s radps:rad/s rads:rad/s degpersec:deg/s degps:deg/s degs:deg/s dps:deg/s rpm:rpm \
+     radsec:rad/s degsec:deg/s",
 );
 
 impl Endings {

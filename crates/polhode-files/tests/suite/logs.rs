@@ -154,6 +154,65 @@ fn robots() {
     );
 }
 
+/// Times and rates of messages, in the units that their definitions state.
+#[test]
+fn messages_with_their_units() {
+    let log = |header: &str, time: [&str; 2], before: &str| {
+        format!("{header}\n{},{before}0.5,-1,2\n{},{before}0.25,1,-2\n", time[0], time[1])
+    };
+    let (us, ns) = (["21000000", "21010000"], ["10000000", "20000000"]);
+    let speeds = "rollspeed,pitchspeed,yawspeed";
+    for (name, text) in [
+        ("MAVLink, ATTITUDE", log(&format!("time_boot_ms,roll,pitch,yaw,{speeds}"), ["10", "20"], "0,0,0,")),
+        (
+            "MAVLink, ATTITUDE_QUATERNION",
+            log(&format!("time_boot_ms,q1,q2,q3,q4,{speeds}"), ["10", "20"], "1,0,0,0,"),
+        ),
+        (
+            "MAVLink, dumped",
+            log(
+                "timestamp,ATTITUDE.roll,ATTITUDE.pitch,ATTITUDE.yaw,ATTITUDE.rollspeed,ATTITUDE.pitchspeed,ATTITUDE.yawspeed",
+                ["0.01", "0.02"],
+                "0,0,0,",
+            ),
+        ),
+        ("MAVLink, HIGHRES_IMU", log("time_usec,xacc,xgyro,ygyro,zgyro", us, "9,")),
+        ("ArduPilot", log("TimeUS,I,GyrX,GyrY,GyrZ", us, "0,")),
+        ("ArduPilot, with the message", log("IMU.TimeUS,IMU.I,IMU.GyrX,IMU.GyrY,IMU.GyrZ", us, "0,")),
+        ("PX4, vehicle_attitude", log(&format!("timestamp,q[0],q[1],q[2],q[3],{speeds}"), us, "1,0,0,0,")),
+        (
+            "PX4, vehicle_odometry",
+            log(
+                "timestamp,timestamp_sample,q[0],q[1],q[2],q[3],angular_velocity[0],angular_velocity[1],angular_velocity[2]",
+                us,
+                "7,1,0,0,0,",
+            ),
+        ),
+        (
+            "ROS 1, Odometry",
+            log(
+                "%time,field.pose.pose.orientation.x,field.twist.twist.angular.x,field.twist.twist.angular.y,field.twist.twist.angular.z",
+                ns,
+                "0,",
+            ),
+        ),
+        (
+            "JSBSim",
+            log(
+                "Time,/fdm/jsbsim/velocities/p-rad_sec,/fdm/jsbsim/velocities/q-rad_sec,/fdm/jsbsim/velocities/r-rad_sec",
+                ["0.01", "0.02"],
+                "",
+            ),
+        ),
+    ] {
+        check(name, &text, 1.0);
+    }
+    // where two messages have a time, neither is that of the rows
+    let two = log("IMU.TimeUS,ATT.TimeUS,IMU.GyrX,IMU.GyrY,IMU.GyrZ", us, "0,");
+    let refused = record::read(&two, "log", &ReadOptions::default()).unwrap_err().to_string();
+    assert!(refused.contains("no column for time"), "{refused}");
+}
+
 #[test]
 fn boards_and_sensors() {
     check("Arduino, millis", "millis,gx,gy,gz\n10,0.5,-1,2\n20,0.25,1,-2\n", 1.0);

@@ -1,6 +1,7 @@
 //! Trajectories as simulators write them: read with their claims, or refused by line and column.
 
 use polhode::audit::{Attitudes, Direction, Frame, QuaternionOrder};
+use polhode::units::{AngleUnit, RateUnit};
 use polhode_files::trajectory::{FoundTrajectory, read};
 use polhode_files::{ColumnNames, ReadOptions};
 
@@ -34,6 +35,47 @@ fn tables_with_a_header_in_a_comment_or_in_none() {
     }
     let found = found("0;1;2;3;4\n5;6;7;8;9\n", "t=1,q0=2,q1=3,q2=4,q3=5").unwrap();
     assert_eq!((quaternions(&found, 0)[1], found.claims.quaternion), ([6.0, 7.0, 8.0, 9.0], None));
+}
+
+/// The messages of flight controllers define times, the place of the scalar, units and axes; the same numbers under other names
+/// claim nothing.
+#[test]
+fn messages_claim_what_their_definitions_state() {
+    let (first, body) = (Some(QuaternionOrder::ScalarFirst), Some(Frame::Body));
+    for (header, order, frame, times) in [
+        ("timestamp,timestamp_sample,q[0],q[1],q[2],q[3]", first, None, [21.0, 21.01]),
+        ("timestamp,delta_q_reset[0],q[0],q[1],q[2],q[3]", first, None, [21.0, 21.01]),
+        ("TimeUS,C,Q1,Q2,Q3,Q4", first, None, [21.0, 21.01]),
+        ("time_usec,id_of_row,q1,q2,q3,q4,rollspeed,pitchspeed,yawspeed", first, body, [21.0, 21.01]),
+        ("t (us),n,Quat_q0,Quat_q1,Quat_q2,Quat_q3", first, None, [21.0, 21.01]),
+        ("timestamp,n,q[0],q[1],q[2],q[3]", None, None, [21e6, 21.01e6]),
+        ("time_us,n,q1,q2,q3,q4", None, None, [21.0, 21.01]),
+    ] {
+        let rates = if frame.is_some() { ",0,0,1" } else { "" };
+        let found = found(&format!("{header}\n21000000,7,1,0,0,0{rates}\n21010000,7,0,1,0,0{rates}\n"), "");
+        let found = found.unwrap_or_else(|error| panic!("{header}: {error}"));
+        assert_eq!((found.claims.quaternion, found.claims.omega_frame), (order, frame), "{header}");
+        assert_eq!(quaternions(&found, 0)[1], [0.0, 1.0, 0.0, 0.0], "{header}");
+        for (time, expected) in found.bodies[0].1.times.iter().zip(times) {
+            assert!((time / expected - 1.0).abs() < 1e-15, "{header}: {time}");
+        }
+    }
+    let angles =
+        found("time_boot_ms,roll,pitch,yaw,rollspeed,pitchspeed,yawspeed\n1,0,0,0,0,0,1\n", "").unwrap();
+    let claims = angles.claims;
+    assert_eq!(
+        (claims.angle_unit, claims.rate_unit),
+        (Some(AngleUnit::Radians), Some(RateUnit::RadiansPerSecond))
+    );
+}
+
+/// Roll, pitch and yaw beside a quaternion are read by nobody, and told.
+#[test]
+fn a_quaternion_is_read_and_the_angles_beside_it_are_told() {
+    let found = found("t,yaw,pitch,roll,qw,qx,qy,qz\n0,7,8,9,1,0,0,0\n", "").unwrap();
+    assert_eq!(quaternions(&found, 0), [[1.0, 0.0, 0.0, 0.0]]);
+    assert_eq!(found.unread, ["yaw", "pitch", "roll"]);
+    assert!(found.second_attitude.is_empty(), "{:?}", found.second_attitude);
 }
 
 #[test]
