@@ -110,7 +110,7 @@ pub fn of_text(text: &str, file: &str, reading: &ReadOptions) -> Result<FoundTra
 }
 
 fn found(mut table: Table) -> Result<FoundTrajectory, TableError> {
-    let claims = claims(&table)?;
+    let mut claims = claims(&table)?;
     let mut rows = Bodies::default();
     let mut second = table.header.second_time().map(SecondTime::new);
     while table.next()? {
@@ -124,15 +124,22 @@ fn found(mut table: Table) -> Result<FoundTrajectory, TableError> {
     if rows.bodies.is_empty() {
         return Err(TableError::of(table.name(), Rule::Rows));
     }
+    let first = table.header.bodies.first().and_then(|columns| columns.attitude.as_ref());
+    let lacks = |body: &Body| body.attitude.is_none();
+    let lacking = first.filter(|_| rows.bodies.iter().all(lacks)).map_or(&[][..], |group| &group.places);
+    if !lacking.is_empty() {
+        (claims.quaternion, claims.attitude) = (None, None);
+    }
     let times = rows.bodies.first().map_or(&[][..], |body| &body.times);
     let read_as = table.read_as(times.windows(2).map(|pair| pair[1] - pair[0]).collect());
     let bodies = rows.bodies.into_iter().map(|body| (body.name.clone(), body.trajectory()));
     let shown = |name: &str| visible(name).into_owned();
+    let lacking = lacking.iter().map(|place| table.header.names[*place].text.trim());
     Ok(FoundTrajectory {
         bodies: bodies.collect(),
         claims,
         counts_steps: table.counts_steps(),
-        unread: table.header.unread().map(shown).collect(),
+        unread: lacking.chain(table.header.unread()).map(shown).collect(),
         second_attitude: table.header.second_attitude().into_iter().map(shown).collect(),
         contradicted_time,
         comments: table.comments,
@@ -410,9 +417,21 @@ impl Body {
                 }
                 _ => false,
             };
-            if is_zero {
+            // a sensor that knows no attitude writes zeros beside its rates (sensor_msgs/Imu of ROS)
+            let is_without =
+                is_zero && self.times.len() == 1 && columns.rates.is_some() && group.places.len() == 4;
+            if is_without {
+                self.attitude = None;
+            } else if is_zero {
                 return Err(table.refused_cell(group.places[0], Rule::Turn));
             }
+        } else if let Some(group) = &columns.attitude
+            && table.numbers::<4>(&group.places)? != [0.0; 4]
+        {
+            let rule =
+                Rule::Other("an attitude, and the first row has none: all its components are zero".into());
+            let error = table.refused_cell(group.places[0], rule);
+            return Err(error.with_remedy("leave out the rows without an attitude"));
         }
         if let (Some(group), Some(rows)) = (&columns.rates, &mut self.rates) {
             let scale = table.scale(group.places[0]);

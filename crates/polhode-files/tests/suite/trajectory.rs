@@ -78,6 +78,24 @@ fn a_quaternion_is_read_and_the_angles_beside_it_are_told() {
     assert!(found.second_attitude.is_empty(), "{:?}", found.second_attitude);
 }
 
+/// A sensor that estimates no attitude writes zeros beside its rates.
+#[test]
+fn an_attitude_of_zeros_beside_rates_is_none() {
+    let zeros = "t,qw,qx,qy,qz,wx,wy,wz\n0,0,0,0,0,1,2,3\n1,0,0,0,0,4,5,6\n";
+    let read = found(zeros, "").unwrap();
+    assert!(read.bodies[0].1.attitude.is_none() && read.claims.quaternion.is_none());
+    assert_eq!(read.bodies[0].1.rates, Some(vec![[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]));
+    assert_eq!(read.unread, ["qw", "qx", "qy", "qz"]);
+    // in some rows only it is refused
+    let later = found(&zeros.replace("1,0,0,0,0", "1,1,0,0,0"), "").unwrap_err();
+    assert!(
+        later.starts_with(", line 3, column 2 (qw): '1': an attitude, and the first row has none"),
+        "{later}"
+    );
+    let earlier = found(&zeros.replace("0,0,0,0,0,1", "0,1,0,0,0,1"), "").unwrap_err();
+    assert!(earlier.starts_with(", line 3, column 2 (qw): '0': every component"), "{earlier}");
+}
+
 #[test]
 fn generalized_positions_of_two_free_joints() {
     let header = |stem: &str, n: usize| (0..n).map(|k| format!(",{stem}_{k}")).collect::<String>();
