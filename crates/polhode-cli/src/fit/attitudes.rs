@@ -127,7 +127,15 @@ impl PoseArguments {
         let (mut has_quaternions, mut has_angles) = (beside.is_empty(), beside.is_empty());
         for path in beside {
             let name = visible(&path.display().to_string()).into_owned();
-            let mut found = trajectory::read(path, &reading.table())?;
+            // a row that cannot be read may be left out of rates, and not of attitudes
+            let of_rates = |error| match error {
+                Error::Table(error) if error.is_of_a_row() => {
+                    let remedy = format!("{}, or fit the rates as they are: --from rates", error.remedy);
+                    Error::from(error.with_remedy(&remedy))
+                }
+                other => other,
+            };
+            let mut found = trajectory::read(path, &reading.table()).map_err(of_rates)?;
             for (_, rows) in &found.bodies {
                 has_quaternions |= matches!(rows.attitude, Some(Attitudes::Quaternions(_)));
                 has_angles |= matches!(rows.attitude, Some(Attitudes::Angles(_)));

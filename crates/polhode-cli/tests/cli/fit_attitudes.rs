@@ -193,6 +193,30 @@ fn rates_about_the_axes_of_space_are_told_by_the_attitudes_beside_them() {
     }
 }
 
+/// Attitudes that are missing beside rates are no reason not to fit the rates.
+#[test]
+fn rates_are_fitted_where_attitudes_beside_them_are_missing() {
+    let scratch = Scratch::new("fit-attitudes-missing");
+    let text = output(&format!("{SIMULATE} --attitude-noise 0.01 --noise 0.02"));
+    let with = |attitude: &str, is_without: fn(usize) -> bool| {
+        let line = |(k, line): (usize, &str)| {
+            let cells: Vec<&str> = line.split(',').collect();
+            let without = format!("{},{attitude},{}", cells[0], cells[5..].join(","));
+            if k > 0 && is_without(k) { without + "\n" } else { format!("{line}\n") }
+        };
+        text.lines().enumerate().map(line).collect::<String>()
+    };
+    let lost = scratch.file("lost.csv", with(",,,", |k| k == 50));
+    refused(2, &format!("fit {lost}"), &["line 51, column 2 (q_w): a number is missing", "--from rates"]);
+    let whole = scratch.file("whole.csv", &text);
+    // a sensor that estimates no attitude writes zeros
+    let none = scratch.file("none.csv", with("0,0,0,0", |_| true));
+    let fitted = |line: &str| json(line)["principal"].clone();
+    let expected = fitted(&format!("fit {whole}"));
+    assert_eq!(fitted(&format!("fit {lost} --from rates")), expected);
+    assert_eq!(fitted(&format!("fit {none}")), expected);
+}
+
 #[test]
 fn rates_beside_attitudes_are_fitted_where_they_are_asked_for() {
     let scratch = Scratch::new("fit-attitudes-both");
