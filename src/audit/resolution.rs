@@ -179,6 +179,15 @@ pub(super) fn noise(rows: &[usize], values: &[f64]) -> f64 {
 /// Rows at which the turn that digits leave open is looked for.
 const TURNED: usize = 300;
 
+impl Trajectory {
+    /// The largest turn, rad, that the rounding of the numbers of an attitude may make, where they are read by `reading`.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn rounding(&self, reading: &Reading) -> f64 {
+        rounding_turn(self, reading, Writings::of(self).attitude)
+    }
+}
+
 impl Attitudes {
     /// The attitude of row `k` alone.
     fn alone(&self, k: usize) -> Self {

@@ -23,7 +23,7 @@ const RADIUS: f64 = 2.795;
 /// An error of so many times the 95 % of its budget is none of it, and of so many times the median error no noise of the reference.
 const FAR: f64 = 10.0;
 
-/// An attitude of the reference is off by so many of what its quaternions are off the norm 1, which their digits leave.
+/// An attitude of the reference is off by so many of what its digits leave: of quaternions what they are off the norm 1.
 const DIGITS: f64 = 10.0;
 
 /// A trajectory to compare with, and what was found.
@@ -61,9 +61,8 @@ impl Reference {
         let (rows, reading) = attitudes(found, &name, refused)?;
         let off = |q: &[f64; 4]| (q.iter().map(|x| x * x).sum::<f64>().sqrt() - 1.0).abs();
         let resolution = match &rows.attitude {
-            Some(Attitudes::Quaternions(all)) => DIGITS * all.iter().map(off).fold(0.0, f64::max),
-            // of others it is not known
-            _ => f64::INFINITY,
+            Some(Attitudes::Quaternions(all)) => all.iter().map(off).fold(0.0, f64::max),
+            _ => rows.rounding(&reading),
         };
         if let Some(beside) = beside {
             warn(&format!("{name}: {beside}"));
@@ -74,7 +73,7 @@ impl Reference {
             reading,
             read_as,
             has_met: false,
-            resolution,
+            resolution: DIGITS * resolution,
             asked: 0,
             compared: 0,
             inside: 0,

@@ -325,6 +325,40 @@ fn the_summary_says_whether_the_budget_holds() {
     assert!(answer.err.contains("the 95 % bounds are too small"), "{}", answer.err);
 }
 
+/// Matrices of the inverse turns contradict the attitudes in as many digits as there are, and the right ones in none.
+#[test]
+fn transposed_matrices_of_a_reference_contradict_the_attitudes() {
+    let scratch = Scratch::new("attitude-matrices");
+    let record = simulated(&scratch, "rates.csv", "--every 0.05");
+    let text = std::fs::read_to_string(exact(&scratch, 0.05)).unwrap();
+    let row = |line: &str, sign: f64, digits: usize| {
+        let cells: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+        let [t, w, x, y, z] = <[f64; 5]>::try_from(cells).unwrap();
+        let w = sign * w;
+        let matrix = [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)],
+            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x)],
+            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y)],
+        ];
+        let cells: Vec<String> =
+            matrix.as_flattened().iter().map(|entry| format!("{entry:.digits$}")).collect();
+        format!("{t},{}\n", cells.join(","))
+    };
+    for (sign, digits, code, says) in [
+        (1.0, 15, 0, "the 95 % bounds hold"),
+        (1.0, 4, 0, "the 95 % bounds are too small"),
+        (-1.0, 15, 1, "the 95 % bounds are contradicted"),
+        (-1.0, 4, 1, "the 95 % bounds are contradicted"),
+    ] {
+        let rows: String = text.lines().skip(1).map(|line| row(line, sign, digits)).collect();
+        let head = "t,r11,r12,r13,r21,r22,r23,r31,r32,r33";
+        let file = scratch.file("matrices.csv", format!("{head}\n{rows}"));
+        let answer = run(&format!("attitude {record} --kind rate --against {file}"));
+        assert_eq!(answer.code, code, "{sign} {digits}: {}", answer.err);
+        assert!(answer.err.contains(says), "{sign} {digits}: {}", answer.err);
+    }
+}
+
 /// Most of the errors say nothing of one that is a turn by half, nor does the start that is that of the reference say anything.
 #[test]
 fn one_wild_row_and_a_start_alone_are_no_agreement() {
