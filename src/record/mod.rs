@@ -154,6 +154,12 @@ impl Record {
         quantum::quanta(self.segments.iter().flat_map(|s| &s.rates))
     }
 
+    /// Whether readings rest on too few values to tell their step: on two or three of a component, or on one of each.
+    #[doc(hidden)]
+    pub fn rests(&self) -> bool {
+        quantum::rests(self.segments.iter().flat_map(|s| &s.rates))
+    }
+
     /// Variance of the rounding of a component of the readings to steps of `quanta`, (rad/s)².
     #[doc(hidden)]
     pub fn rounding(&self, quanta: &Vector3<f64>) -> f64 {

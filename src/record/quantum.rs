@@ -18,6 +18,20 @@ pub(crate) fn quanta<'a>(rates: impl Iterator<Item = &'a Vector3<f64>>) -> Vecto
     Vector3::from_fn(|axis, _| step(some.iter().map(|w| w[axis]).collect()).unwrap_or(0.0))
 }
 
+/// Whether readings rest on too few values to tell their step: on two or three of a component, or on one of each.
+pub(crate) fn rests<'a>(rates: impl Iterator<Item = &'a Vector3<f64>>) -> bool {
+    let mut known: [Vec<f64>; 3] = [Vec::new(), Vec::new(), Vec::new()];
+    for rate in rates.take(LOOKED_AT) {
+        for (values, x) in known.iter_mut().zip(rate.iter()) {
+            if values.len() < DISTINCT.0 && !values.contains(x) {
+                values.push(*x);
+            }
+        }
+    }
+    let counts = known.map(|values| values.len());
+    counts == [1; 3] || counts.iter().any(|count| (2..DISTINCT.0).contains(count))
+}
+
 /// Variance of the rounding of one component to steps of `quanta`, the mean of all three.
 ///
 /// An error of rounding is uniform within a step, q²/12. While a reading rests on a step its errors are one and the same:
@@ -77,5 +91,20 @@ mod tests {
         let fine: Vec<_> = smooth.iter().map(|w| w.map(|x| (x * 1e6).round() / 1e6)).collect();
         assert_eq!(quanta(fine.iter()), Vector3::zeros());
         assert_eq!(quanta([Vector3::zeros(); 100].iter()), Vector3::zeros());
+    }
+
+    /// Steps of which a component has fewer than four are not told; a component that stays beside others that move is not measured.
+    #[test]
+    fn readings_on_three_steps_rest_and_those_on_four_have_a_step() {
+        let on = |steps: usize| -> Vec<Vector3<f64>> {
+            let value = |k: usize| 0.02 * (k % steps) as f64;
+            (0..300).map(|k| Vector3::new(value(k), 0.1 * k as f64, 0.0)).collect()
+        };
+        for steps in 1..6 {
+            let readings = on(steps);
+            assert_eq!(rests(readings.iter()), (2..4).contains(&steps), "{steps}");
+            assert_eq!(quanta(readings.iter()).x > 0.0, steps >= 4, "{steps}");
+        }
+        assert!(rests([Vector3::repeat(0.02); 300].iter()));
     }
 }

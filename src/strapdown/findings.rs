@@ -130,6 +130,17 @@ impl Findings {
         )
     }
 
+    /// Of readings that rest on a few values: what they are off within a step of the sensor stays, and is not in the deviation `sigma`;
+    /// `bias` states it.
+    pub fn resting(record: &Record, sigma: &str, bias: &str) -> Option<String> {
+        record.rests().then(|| {
+            format!(
+                "the readings rest on so few values that their noise is not known, nor what they are off within a step of the sensor: \
+                 {sigma} does not include it; give {bias}, of a step of 0.01 about 0.003"
+            )
+        })
+    }
+
     /// Of so few samples that one polynomial of the `rule` goes through all of them.
     pub fn without_truncation(rule: Rule, samples: usize) -> Option<String> {
         let through = if let Rule::Magnus(magnus) = rule { magnus.samples() } else { 2 };

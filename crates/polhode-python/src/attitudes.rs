@@ -42,7 +42,8 @@ pub(crate) struct Attitudes {
 ///
 /// The result may have fewer times than the record, as some readings are left out: rates that jump off their neighbours, that repeat the
 /// reading before, or that are at the end of the sensor's range. Rates of the same time are averaged. Warnings say so. Warnings also say if
-/// an increment may be missing, if there are too few samples to estimate noise or truncation, and if the attitude is lost. Gaps are refused.
+/// an increment may be missing, if there are too few samples to estimate noise or truncation, if readings rest on so few values that their
+/// step is not known, and if the attitude is lost. Gaps are refused.
 ///
 /// >>> import numpy, polhode
 /// >>> t = numpy.arange(2000) * 0.05
@@ -91,6 +92,8 @@ pub(crate) fn attitude(
                 let (noise, is_enough) = Findings::noise(&record);
                 if !is_enough {
                     warnings.push(Findings::without_noise("sigma", "noise"));
+                } else if bias == 0.0 {
+                    warnings.extend(Findings::resting(&record, "sigma", "bias"));
                 }
                 (noise, is_enough)
             }

@@ -61,6 +61,11 @@ def test_warnings_are_those_of_the_command():
     # stamps count where no noise is found that holds them
     with pytest.warns(PolhodeWarning, match="fewer than 5 samples"):
         assert polhode.attitude(T[:4], RATES[:4], kind="rate", rule="magnus:2,2", stamps=0.01).budget["stamps"][-1] > 0
+    # one step of a sensor
+    still = np.full((100, 3), 0.02)
+    steps = "the readings rest on so few values"
+    assert any(text.startswith(steps) for text in told(T[:100], still, kind="rate"))
+    assert not told(T[:100], still, kind="rate", bias=0.006) and not told(T[:100], still, kind="rate", noise=1e-3)
     missing = np.delete(np.arange(100), 20)
     one = "1 intervals are longer than 1.5 usual ones, the first ends at 1.05 s"
     assert any(text.startswith(one) for text in told(T[missing], RATES[missing] * 0.05, kind="increment", rule="magnus:2,2"))

@@ -3,6 +3,7 @@
 use clap::Args;
 use polhode::record::Record;
 use polhode::strapdown::{Findings, Sensor};
+use polhode_files::error::warn;
 use polhode_files::numbers::not_negative;
 
 /// Standard deviations of the errors of the sensor.
@@ -40,12 +41,15 @@ pub(super) enum NoiseBy {
 }
 
 impl SensorArguments {
-    /// As given, or that of the longest segment; steps of digital readings count as noise.
+    /// As given, or that of the longest segment; steps of digital readings count as noise, and a warning says where they cannot be told.
     pub(super) fn noise(&self, record: &Record) -> Noise {
         if let Some(sigma) = self.noise {
             return Noise { sigma, by: NoiseBy::Flag };
         }
         let (sigma, is_enough) = Findings::noise(record);
+        if is_enough && self.bias.is_none() {
+            Findings::resting(record, "attitude_sigma", "--bias").iter().for_each(|warning| warn(warning));
+        }
         Noise { sigma, by: if is_enough { NoiseBy::Record } else { NoiseBy::Nothing } }
     }
 

@@ -97,7 +97,8 @@ fn a_noisy_record_has_its_random_walk() {
 fn a_record_that_is_too_short_for_its_budget_says_what_is_missing() {
     let scratch = Scratch::new("attitude-short");
     let told = |rows: u32, flags: &str| {
-        let rows: String = (0..rows).map(|k| format!("{},0.1,0.3,0.2\n", 0.25 * f64::from(k))).collect();
+        let row = |t: f64| format!("{t},{},{},{}\n", 0.1 + 0.1 * t, 0.3 - 0.1 * t, 0.2 + 0.2 * t);
+        let rows: String = (0..rows).map(|k| row(0.25 * f64::from(k))).collect();
         let file = scratch.file("short.csv", format!("t,wx,wy,wz\n{rows}"));
         let answer = run(&format!("attitude {file} --kind rate {flags}"));
         assert_eq!(answer.code, 0, "{answer:?}");
@@ -112,6 +113,31 @@ fn a_record_that_is_too_short_for_its_budget_says_what_is_missing() {
     assert!(!stated.contains("warning: "), "{stated}");
     let five = told(5, "--order 4 --samples 4");
     assert!(!five.contains("warning: ") && five.contains("noise found in the record"), "{five}");
+}
+
+/// Readings that all rest on one step do not show what they are off within it, and add it up: as a bias of q/√12 it has a deviation that
+/// grows with time.
+#[test]
+fn what_readings_on_one_step_are_off_is_warned_of_until_it_is_stated() {
+    let scratch = Scratch::new("attitude-steps");
+    let rows: String = (0..400).map(|k| format!("{},0.02,0.02,-0.02\n", 0.05 * f64::from(k))).collect();
+    let file = scratch.file("steps.csv", format!("t (s),wx (rad/s),wy (rad/s),wz (rad/s)\n{rows}"));
+    let answer = |flags: &str| {
+        let answer = run(&format!("attitude {file} --kind rate {flags}"));
+        assert_eq!(answer.code, 0, "{flags}: {}", answer.err);
+        answer
+    };
+    let says = "warning: the readings rest on so few values";
+    let bare = answer("");
+    assert!(bare.err.contains(says), "{}", bare.err);
+    // true rates within half a step of the readings, unseen
+    assert!(last(&column(&bare.out, "attitude_sigma")) < 1e-12);
+    let bias = 0.02 / 12.0_f64.sqrt();
+    let stated = answer(&format!("--bias {bias}"));
+    assert!(!stated.err.contains(says), "{}", stated.err);
+    let grown = last(&column(&stated.out, "attitude_sigma")) / (bias * 19.95);
+    assert!((0.95..1.0).contains(&grown), "{grown}");
+    assert!(!answer("--noise 1e-3").err.contains(says));
 }
 
 #[test]
