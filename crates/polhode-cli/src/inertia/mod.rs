@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use nalgebra::{Matrix3, Vector3};
-use polhode::inertia::{Amount, InertiaError, MassError, MassProperties, Solid};
+use polhode::inertia::{Amount, Evidence, InertiaError, MassError, MassProperties, Oddity, Solid, diagnose};
 use polhode_files::bodies;
 use polhode_files::error::{Error, warn};
 use polhode_files::examined::{Examined, Worth};
@@ -285,7 +285,7 @@ impl Inertia {
         self.check_flags()?;
         match shape {
             "tensor" => single(self.tensor()?),
-            "mesh" => single(Given::body(self.mesh.body(path, self.amount()?)?)),
+            "mesh" => single(self.weighed(self.mesh.body(path, self.amount()?)?)),
             "parts" => single(Given::body(bodies::parts(path)?)),
             "json" => given::from_json(path, &read(path, "name a JSON file of this command")?),
             _ => {
@@ -296,9 +296,24 @@ impl Inertia {
                 let sizes = list(&self.argument)
                     .map_err(|error| Error::Input(format!("{shape}: '{}': {error}", self.argument)))?;
                 let solid = Solid::named(shape, &sizes).map_err(|error| self.refused(error))?;
-                single(Given::body(solid.with(self.amount()?).map_err(|error| self.refused(error))?))
+                single(self.weighed(solid.with(self.amount()?).map_err(|error| self.refused(error))?))
             }
         }
+    }
+
+    /// A shape or a mesh; where its mass is stated, a unit of another length or mass than is read shows in its density.
+    fn weighed(&self, body: MassProperties) -> Given {
+        let found =
+            self.mass.and_then(|mass| diagnose(body.tensor(), &Evidence::default().with_mass(mass)).ok());
+        if let Some(density @ (Oddity::Dense { .. } | Oddity::Light { .. })) =
+            found.and_then(|found| found.oddity)
+        {
+            warn(&format!(
+                "{} {}: {density}; lengths are read in m (of a mesh in --length-unit) and masses in kg",
+                self.shape, self.argument
+            ));
+        }
+        Given::body(body)
     }
 
     fn only_for(&self, shapes: &str, flag: &str, given: bool) -> Result<(), Error> {

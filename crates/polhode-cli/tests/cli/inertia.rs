@@ -129,7 +129,7 @@ fn every_shape_is_golden() {
     let moments = |line: &str| numbers(&scratch.json(line)["principal_moments"]);
     assert_eq!(moments("box 1,2,3 --mass 12"), [5.0, 10.0, 13.0]);
     assert_eq!(moments("sphere 2 --mass 5"), [8.0, 8.0, 8.0]);
-    assert_eq!(moments("cylinder 2,3 --mass 4"), [7.0, 7.0, 8.0]);
+    assert_eq!(moments("cylinder 2,3 --mass 8"), [14.0, 14.0, 16.0]);
     assert_eq!(moments("rod 6 --mass 1"), [0.0, 3.0, 3.0]);
     assert_eq!(moments("hoop 2 --mass 1"), [2.0, 2.0, 4.0]);
 }
@@ -173,6 +173,31 @@ fn the_keys_of_the_conventions_are_there() {
     assert_eq!(body["triangle_margins"][2], 0.0);
     assert_eq!(body["sign"], "I_xy = -int x y dm");
     assert!(scratch.json("tensor 1,2,2,0,0,0")["mass"].is_null());
+}
+
+/// A thousand times the length makes a body lighter than air by far, and a thousand times the mass one denser than osmium; flat bodies
+/// and stated densities have nothing to tell.
+#[test]
+fn shapes_and_meshes_in_another_unit_are_told_by_their_density() {
+    let scratch = workshop("weighed");
+    for (line, says) in [
+        ("box 0.1,0.2,0.3 --mass 2", None),
+        ("box 100,200,300 --mass 2", Some("air has 1.2")),
+        ("box 0.1,0.2,0.3 --mass 2000", Some("osmium has 22590")),
+        ("sphere 0.05 --density 0.01", None),
+        ("plate 100,200 --mass 2", None),
+        ("rod 1000 --mass 2", None),
+        ("mesh corner.stl --mass 2", None),
+        ("mesh corner.stl --mass 0.002", Some("air has 1.2")),
+        ("mesh corner.stl --mass 0.002 --length-unit cm", None),
+        ("mesh corner.stl --mass 0.002 --length-unit mm", Some("osmium has 22590")),
+    ] {
+        let answer = scratch.run(line);
+        assert_eq!(answer.code, 0, "{line}: {}", answer.err);
+        let told = answer.err.contains("warning: ") && answer.err.contains("implausible density");
+        assert_eq!(told, says.is_some(), "{line}: {}", answer.err);
+        assert!(answer.err.contains(says.unwrap_or_default()), "{line}: {}", answer.err);
+    }
 }
 
 #[test]
