@@ -1,6 +1,7 @@
 //! What is found among the readings that become attitudes, in the words of the command and of the Python package.
 
-use super::{Kind, NOISE_SAMPLES, Rule, noise};
+use super::noise::changing_noise;
+use super::{Kind, NOISE_SAMPLES, Rule};
 use crate::num::Shown;
 use crate::record::{Record, Spike, median};
 
@@ -114,11 +115,11 @@ impl Findings {
         warnings
     }
 
-    /// White noise of a reading by the longest segment, of digital readings with that of their steps; and whether there are enough samples
-    /// to tell it.
+    /// White noise of a reading by the longest segment, its mean square where it changes, of digital readings with that of their steps; and
+    /// whether there are enough samples to tell it.
     pub fn noise(record: &Record) -> (f64, bool) {
         let longest = record.segments.iter().max_by_key(|segment| segment.times().len());
-        let found = longest.map_or(0.0, |segment| noise(segment.times(), segment.rates()));
+        let found = longest.map_or(0.0, |segment| changing_noise(segment.times(), segment.rates()));
         let rounding = record.rounding(&record.quanta()).sqrt();
         (found.max(rounding), longest.is_some_and(|segment| segment.times().len() >= NOISE_SAMPLES))
     }
