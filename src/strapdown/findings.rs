@@ -8,6 +8,9 @@ use crate::record::{Record, Spike, median};
 /// An interval in which a reading may be missing, in median intervals.
 const LONG: f64 = 1.5;
 
+/// Rates jump where they change so many times as much as before, behind and usually.
+const JUMP: f64 = 10.0;
+
 /// What was left out of the readings of a record, part by part, and what the budgets of their attitudes do not hold.
 #[doc(hidden)]
 #[derive(Clone, Debug, Default)]
@@ -25,6 +28,10 @@ pub struct Findings {
     /// Intervals in which a reading may be missing, and the end of the first, s.
     long: usize,
     first_long: Option<f64>,
+    /// Jumps of the rates, the row behind the first, s, and the variance of the turn that they leave open, rad².
+    jumps: usize,
+    first_jump: Option<f64>,
+    left_open: f64,
 }
 
 impl Findings {
@@ -53,6 +60,24 @@ impl Findings {
         self.long += long().count();
         let first = long().map(|(_, end)| *end).reduce(f64::min);
         self.first_long = self.first_long.or(first);
+    }
+
+    /// Counts rates that jump between two rows, as of a body that is struck: when they do within the interval is not known, and the turn
+    /// in it is anything between those by the two rates.
+    pub fn add_jumps(&mut self, record: &Record) {
+        for segment in &record.segments {
+            let steps: Vec<f64> = segment.rates().windows(2).map(|pair| (pair[1] - pair[0]).norm()).collect();
+            // readings that mostly stay change by steps of their sensor
+            let Some(usual) = median(&mut steps.clone()).filter(|usual| *usual > 0.0) else { continue };
+            for (step, times) in steps.windows(3).zip(segment.times().windows(4)) {
+                if step[1] > JUMP * usual.max(step[0]).max(step[2]) {
+                    let open = step[1] * (times[2] - times[1]);
+                    self.jumps += 1;
+                    self.first_jump = self.first_jump.or(Some(times[2]));
+                    self.left_open += open * open / 12.0;
+                }
+            }
+        }
     }
 
     /// Number of samples that are left.
@@ -106,6 +131,13 @@ impl Findings {
             warnings.push(format!(
                 "{long} intervals are longer than {LONG} usual ones, the first ends at {first} s: if a row is missing there, \
                  its turn is missing in the attitude"
+            ));
+        }
+        if let Some(first) = self.first_jump {
+            let (jumps, first, open) = (self.jumps, Shown(first), self.left_open.sqrt());
+            warnings.push(format!(
+                "{jumps} jumps of the rates, the first before {first} s: when they come between two rows is not known, which leaves {open:.1e} \
+                 rad open that is not in the budget"
             ));
         }
         if self.saturated > 0 {

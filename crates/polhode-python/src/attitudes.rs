@@ -43,7 +43,7 @@ pub(crate) struct Attitudes {
 /// The result may have fewer times than the record, as some readings are left out: rates that jump off their neighbours, that repeat the
 /// reading before, or that are at the end of the sensor's range. Rates of the same time are averaged. Warnings say so. Warnings also say if
 /// an increment may be missing, if there are too few samples to estimate noise or truncation, if readings rest on so few values that their
-/// step is not known, and if the attitude is lost. Gaps are refused.
+/// step is not known, if rates jump between two rows, and if the attitude is lost. Gaps are refused.
 ///
 /// >>> import numpy, polhode
 /// >>> t = numpy.arange(2000) * 0.05
@@ -203,7 +203,9 @@ impl Cleaned {
         if let Some(rule) = findings.lost(kind, 0) {
             return Err(rule);
         }
-        if kind != Kind::Rate {
+        if kind == Kind::Rate {
+            findings.add_jumps(&record);
+        } else {
             findings.add_intervals(&record, None);
         }
         Ok(Cleaned { record: record.parted(), warnings: findings.warnings(row) })

@@ -157,7 +157,9 @@ impl Readings {
                 self.unused.push(name.clone());
             }
         }
-        if self.kind != Kind::Rate {
+        if self.kind == Kind::Rate {
+            self.found.add_jumps(&part.record);
+        } else {
             self.found.add_intervals(&part.record, self.last.filter(|_| part.continues));
         }
         part.record = part.record.parted();

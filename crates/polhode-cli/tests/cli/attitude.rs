@@ -140,6 +140,32 @@ fn what_readings_on_one_step_are_off_is_warned_of_until_it_is_stated() {
     assert!(!answer("--noise 1e-3").err.contains(says));
 }
 
+/// Rates that jump by Δ between two rows at a distance h leave a turn open that lies anywhere within Δ h, of deviation Δ h/√12; averages
+/// have the turn.
+#[test]
+fn the_turn_that_a_jump_between_two_rows_leaves_open_is_told() {
+    let scratch = Scratch::new("attitude-jump");
+    let told = |jump: f64, kind: &str| {
+        let row = |k: u32| {
+            let rate = 0.5 + if k < 200 { 0.0 } else { jump };
+            let [x, z] = [k % 7, k % 5].map(|steps| 1e-3 * f64::from(steps));
+            format!("{},{x},0,{}\n", 0.05 * f64::from(k), rate + z)
+        };
+        let rows: String = (0..400).map(row).collect();
+        let file = scratch.file("jump.csv", format!("t (s),wx (rad/s),wy (rad/s),wz (rad/s)\n{rows}"));
+        let answer = run(&format!("attitude {file} --kind {kind}"));
+        assert_eq!((answer.code, answer.out.lines().count()), (0, 401), "{}", answer.err);
+        answer.err
+    };
+    let says = "warning: 1 jumps of the rates, the first before 10 s: ";
+    let jump = told(1.0, "rate");
+    assert!(jump.contains(says) && jump.contains("leaves 1.4e-2 rad open"), "{jump}");
+    for (jump, kind) in [(0.0, "rate"), (1.0, "average")] {
+        let none = told(jump, kind);
+        assert!(!none.contains("jumps of the rates"), "{none}");
+    }
+}
+
 #[test]
 fn the_kind_is_told_by_the_unit_or_asked_for() {
     let scratch = Scratch::new("attitude-kind");
