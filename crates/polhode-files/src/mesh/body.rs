@@ -34,6 +34,12 @@ pub struct MeshOptions {
     pub group: Option<String>,
 }
 
+/// How long, m, a mesh is that hardly is in metres.
+pub(crate) fn beyond_metres(surface: &Surface) -> Option<f64> {
+    let longest = surface.extents().into_iter().fold(0.0, f64::max);
+    (longest > LONG).then(|| three_digits(longest))
+}
+
 /// Metres of a unit of length, by name or as a number.
 ///
 /// # Errors

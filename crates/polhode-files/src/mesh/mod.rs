@@ -15,6 +15,7 @@ use polhode::inertia::Surface;
 use crate::error::Error;
 use crate::inputs;
 use crate::text::visible;
+pub(crate) use body::beyond_metres;
 pub use body::{MeshOptions, findings, length_unit};
 pub use error::MeshFileError;
 pub use obj::read as obj;

@@ -304,6 +304,26 @@ mod tests {
         }
     }
 
+    /// A mesh of MJCF without a scale is in metres, and one of a hundred metres is asked about.
+    #[test]
+    fn a_mesh_of_mjcf_that_is_long_for_metres_is_told() {
+        let told = |scale: &str| {
+            let text = format!(
+                "<mujoco><asset><mesh name='t' vertex='0 0 0 100 0 0 0 100 0 0 0 100' {scale}/></asset>\
+                 <worldbody><body name='a'><geom type='mesh' mesh='t'/></body></worldbody></mujoco>"
+            );
+            let found = read(Language::Mjcf, Path::new("model"), &text, None).unwrap();
+            let [Given { defect: None, remark, .. }] = &found[..] else { panic!("{found:?}") };
+            remark.clone()
+        };
+        assert!(
+            told("").is_some_and(|remark| remark.contains("mesh 't': 100 m long; if it is in millimetres"))
+        );
+        assert_eq!(told("scale='0.001 0.001 0.001'"), None);
+        // a scale that was written was meant
+        assert_eq!(told("scale='1 1 1'"), None);
+    }
+
     #[test]
     fn a_link_of_urdf_with_nothing_but_a_line_break_in_it_is_a_link() {
         let frames = "<link name='a'>\n</link><link name='b'/><transmission><link>b</link></transmission>";

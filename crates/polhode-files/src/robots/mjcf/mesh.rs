@@ -7,9 +7,11 @@ use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use polhode::inertia::{Amount, MassProperties, Surface};
 
 use super::super::element::{Element, list};
+use super::super::remarks;
 use super::defaults::Defaults;
 use crate::mesh;
 use crate::numbers::turn;
+use crate::text::rounded;
 
 /// Volumes closer than this are the same mesh seen through rounding.
 const SAME: f64 = 1e-3;
@@ -73,10 +75,9 @@ impl<'e> Meshes<'e> {
             return Err(format!("no default class '{class}'"));
         }
         let text = |attribute| defaults.value(asset, class, attribute).map(|(_, value)| value.text.as_str());
-        let scale = match defaults.value(asset, class, "scale") {
-            Some((level, _)) => level.needed::<3>("scale")?,
-            None => [1.0; 3],
-        };
+        let scaled = defaults.value(asset, class, "scale").map(|(level, _)| level.needed::<3>("scale"));
+        let scaled = scaled.transpose()?;
+        let scale = scaled.unwrap_or([1.0; 3]);
         let at = Vector3::from(asset.optional::<3>("refpos")?.unwrap_or_default());
         let back = match asset.optional::<4>("refquat")? {
             Some(q) => turn(q).ok_or("refquat is zero; 1 0 0 0 is the identity")?.inverse(),
@@ -85,7 +86,10 @@ impl<'e> Meshes<'e> {
         let map = |v: Vector3<f64>| (back * (v - at)).component_mul(&Vector3::from(scale));
         let surface = self.surface(asset)?.mapped(map).map_err(|error| error.to_string())?;
         let surface = if scale.iter().product::<f64>() < 0.0 { surface.reversed() } else { surface };
-        match text("inertia").unwrap_or(self.inertia) {
+        let long = mesh::beyond_metres(&surface).filter(|_| scaled.is_none()).map(|longest| {
+            format!("{} m long; if it is in millimetres, write scale=\"0.001 0.001 0.001\"", rounded(longest))
+        });
+        let found = match text("inertia").unwrap_or(self.inertia) {
             "legacy" => legacy(&surface),
             "convex" => enclosed(&surface.hull().map_err(|error| error.to_string())?),
             "exact" => enclosed(&surface),
@@ -94,7 +98,8 @@ impl<'e> Meshes<'e> {
                 Ok(Body { measure: body.mass(), body, remark: None })
             }
             other => Err(format!("inertia '{other}' is unknown; known: convex, exact, legacy, shell")),
-        }
+        }?;
+        Ok(Body { remark: remarks(found.remark, long), ..found })
     }
 
     /// The triangles of the asset, the hull of its vertices if it has no faces.
