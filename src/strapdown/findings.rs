@@ -70,8 +70,11 @@ impl Findings {
             // readings that mostly stay change by steps of their sensor
             let Some(usual) = median(&mut steps.clone()).filter(|usual| *usual > 0.0) else { continue };
             for (step, times) in steps.windows(3).zip(segment.times().windows(4)) {
-                if step[1] > JUMP * usual.max(step[0]).max(step[2]) {
-                    let open = step[1] * (times[2] - times[1]);
+                let [before, own, behind] = [0, 1, 2].map(|k| times[k + 1] - times[k]);
+                // a longer interval has a larger step
+                let smooth = (step[0] * (own / before).max(1.0)).max(step[2] * (own / behind).max(1.0));
+                if step[1] > JUMP * usual.max(smooth) {
+                    let open = step[1] * own;
                     self.jumps += 1;
                     self.first_jump = self.first_jump.or(Some(times[2]));
                     self.left_open += open * open / 12.0;

@@ -203,12 +203,14 @@ impl Cleaned {
         if let Some(rule) = findings.lost(kind, 0) {
             return Err(rule);
         }
-        if kind == Kind::Rate {
-            findings.add_jumps(&record);
-        } else {
+        if kind != Kind::Rate {
             findings.add_intervals(&record, None);
         }
-        Ok(Cleaned { record: record.parted(), warnings: findings.warnings(row) })
+        let record = record.parted();
+        if kind == Kind::Rate {
+            findings.add_jumps(&record);
+        }
+        Ok(Cleaned { record, warnings: findings.warnings(row) })
     }
 }
 

@@ -157,12 +157,13 @@ impl Readings {
                 self.unused.push(name.clone());
             }
         }
-        if self.kind == Kind::Rate {
-            self.found.add_jumps(&part.record);
-        } else {
+        if self.kind != Kind::Rate {
             self.found.add_intervals(&part.record, self.last.filter(|_| part.continues));
         }
         part.record = part.record.parted();
+        if self.kind == Kind::Rate {
+            self.found.add_jumps(&part.record);
+        }
         for (k, segment) in part.record.segments.iter().enumerate() {
             if !(k == 0 && part.continues) {
                 self.check_gap(segment, &part.spikes)?;
