@@ -3,7 +3,7 @@
 use std::vec::IntoIter;
 
 use nalgebra::UnitQuaternion;
-use polhode::record::Segment;
+use polhode::record::{Record, Segment};
 use polhode::strapdown::{Budgeted, Estimate, Findings, Kind, Rule, Sensor, Strapdown, StrapdownError};
 use polhode_files::error::{Error, tell, warn};
 use polhode_files::text::rounded;
@@ -12,12 +12,31 @@ use super::readings::Readings;
 use super::rule;
 use super::sensor::NoiseBy;
 
+/// A later part of a record with so many times the noise of the first is told.
+const NOISIER: f64 = 3.0;
+
 /// How readings become attitudes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Course {
     pub(super) rule: Rule,
     pub(super) sensor: Sensor,
     pub(super) noise_by: NoiseBy,
+}
+
+impl Course {
+    /// That the noise of a later part of the record is not that which was found in the first, in words; `None` where it is.
+    pub(super) fn noisier(&self, record: &Record) -> Option<String> {
+        let first = self.sensor.noise;
+        let (noise, is_enough) = Findings::noise(record);
+        let start = record.segments.first()?.times().first()?;
+        (self.noise_by == NoiseBy::Record && is_enough && noise > NOISIER * first).then(|| {
+            format!(
+                "from t = {} s on the readings are noisier ({noise:.1e}) than those before, whose noise attitude_sigma has ({first:.1e}); \
+                 give --noise",
+                rounded(*start)
+            )
+        })
+    }
 }
 
 /// An attitude by the readings alone, and that of a known body, where there is one.

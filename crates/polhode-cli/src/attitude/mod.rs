@@ -110,6 +110,7 @@ impl Attitude {
         let (mut course, mut integration): (Option<Course>, Option<Integration>) = (None, None);
         let mut rows = RowWriter::new(self.table(), self.format, self.out.as_deref(), None)?;
         let (mut lost, mut apart): (Option<f64>, Apart) = (None, Apart::default());
+        let mut noisier: Option<String> = None;
         let mut found = Vec::new();
         while let Some(Part { record, continues, .. }) = readings.next()? {
             let read_as = readings.read_as();
@@ -118,6 +119,9 @@ impl Attitude {
                 reference.align(&read_as)?;
                 let times = record.segments.iter().flat_map(|segment| segment.times());
                 reference.check(times, readings.has_more())?;
+            }
+            if let (Some(course), None) = (course, &noisier) {
+                noisier = course.noisier(&record);
             }
             for (k, segment) in record.segments.iter().enumerate() {
                 let course = match course {
@@ -145,6 +149,7 @@ impl Attitude {
             reference.tell();
         }
         apart.tell();
+        noisier.iter().for_each(|warning| warn(warning));
         if course.is_some_and(|course| course.noise_by == NoiseBy::Nothing) {
             warn(&Findings::without_noise("attitude_sigma", "--noise"));
         }

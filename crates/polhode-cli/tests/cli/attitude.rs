@@ -92,6 +92,32 @@ fn a_noisy_record_has_its_random_walk() {
     assert!(other.err.contains("the record contradicts the body"), "{}", other.err);
 }
 
+/// The first 65,536 rows tell the noise, and a record that is louder behind them has more than its budget.
+#[test]
+fn a_part_of_a_long_record_that_is_noisier_than_the_first_is_told() {
+    let scratch = Scratch::new("attitude-noisier");
+    let mut state = 1_u64;
+    let mut white = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    let mut told = |loud: f64| {
+        let row = |k: u32| {
+            let size = if k < 66_000 { 1e-4 } else { loud };
+            let [x, y, z] = [0.1, 0.2, 0.3].map(|rate| rate + size * white());
+            format!("{},{x},{y},{z}\n", 0.01 * f64::from(k))
+        };
+        let rows: String = (0..70_000).map(row).collect();
+        let file = scratch.file("long.csv", format!("t (s),wx (rad/s),wy (rad/s),wz (rad/s)\n{rows}"));
+        let answer = run(&format!("attitude {file} --kind rate"));
+        assert_eq!(answer.code, 0, "{}", answer.err);
+        answer.err
+    };
+    let (loud, steady) = (told(1e-2), told(1e-4));
+    assert!(loud.contains("the readings are noisier (2."), "{loud}");
+    assert!(!steady.contains("noisier"), "{steady}");
+}
+
 /// Four readings of whatever noise lie on a cubic.
 #[test]
 fn a_record_that_is_too_short_for_its_budget_says_what_is_missing() {
