@@ -172,7 +172,7 @@ impl Findings {
         record.rests().then(|| {
             format!(
                 "the readings rest on so few values that their noise is not known, nor what they are off within a step of the sensor: \
-                 {sigma} does not include it; give {bias}, of a step of 0.01 about 0.003"
+                 {sigma} does not include it; give {bias}, about 0.3 of a step"
             )
         })
     }
