@@ -110,7 +110,7 @@ impl Attitude {
         let (mut course, mut integration): (Option<Course>, Option<Integration>) = (None, None);
         let mut rows = RowWriter::new(self.table(), self.format, self.out.as_deref(), None)?;
         let (mut lost, mut apart): (Option<f64>, Apart) = (None, Apart::default());
-        let mut noisier: Option<String> = None;
+        let (mut resting, mut noisier): (Option<String>, Option<String>) = (None, None);
         let mut found = Vec::new();
         while let Some(Part { record, continues, .. }) = readings.next()? {
             let read_as = readings.read_as();
@@ -126,7 +126,10 @@ impl Attitude {
             for (k, segment) in record.segments.iter().enumerate() {
                 let course = match course {
                     Some(course) => course,
-                    None => *course.insert(self.course(&readings, &record)?),
+                    None => {
+                        resting = self.sensor.resting(&record);
+                        *course.insert(self.course(&readings, &record)?)
+                    }
                 };
                 let mut current = match integration.take() {
                     Some(integration) if k == 0 && continues => integration,
@@ -149,7 +152,7 @@ impl Attitude {
             reference.tell();
         }
         apart.tell();
-        noisier.iter().for_each(|warning| warn(warning));
+        resting.iter().chain(&noisier).for_each(|warning| warn(warning));
         if course.is_some_and(|course| course.noise_by == NoiseBy::Nothing) {
             warn(&Findings::without_noise("attitude_sigma", "--noise"));
         }

@@ -3,7 +3,6 @@
 use clap::Args;
 use polhode::record::Record;
 use polhode::strapdown::{Findings, Sensor};
-use polhode_files::error::warn;
 use polhode_files::numbers::not_negative;
 
 /// Standard deviations of the errors of the sensor.
@@ -41,16 +40,19 @@ pub(super) enum NoiseBy {
 }
 
 impl SensorArguments {
-    /// As given, or that of the longest segment; steps of digital readings count as noise, and a warning says where they cannot be told.
+    /// As given, or that of the longest segment; steps of digital readings count as noise.
     pub(super) fn noise(&self, record: &Record) -> Noise {
         if let Some(sigma) = self.noise {
             return Noise { sigma, by: NoiseBy::Flag };
         }
         let (sigma, is_enough) = Findings::noise(record);
-        if is_enough && self.bias.is_none() {
-            Findings::resting(record, "attitude_sigma", "--bias").iter().for_each(|warning| warn(warning));
-        }
         Noise { sigma, by: if is_enough { NoiseBy::Record } else { NoiseBy::Nothing } }
+    }
+
+    /// Where the steps of digital readings cannot be told, in words; `None` where they can, or what they leave open is stated.
+    pub(super) fn resting(&self, record: &Record) -> Option<String> {
+        let is_found = self.noise.is_none() && self.bias.is_none() && Findings::noise(record).1;
+        is_found.then(|| Findings::resting(record, "attitude_sigma", "--bias")).flatten()
     }
 
     pub(super) fn sensor(&self, noise: Noise) -> Sensor {

@@ -95,7 +95,7 @@ fn a_noisy_record_has_its_random_walk() {
 /// The first 65,536 rows tell the noise, and a record that is louder behind them has more than its budget.
 #[test]
 fn a_part_of_a_long_record_that_is_noisier_than_the_first_is_told() {
-    let scratch = Scratch::new("attitude-noisier");
+    let scratch = Scratch::new("attitude-louder");
     let mut state = 1_u64;
     let mut white = || {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
