@@ -68,7 +68,8 @@ def command(name, size, folder):
 def prepare(program, name, size, folder):
     """What a run reads."""
     if name == "samples of a fit":
-        record = ["simulate", *BODY, "--until", str(size / 100), "--every", "0.01", "--noise", "0.01", "--seed", "1"]
+        # with the first seed one of the records seems to have a torque by chance, and is fitted with it too
+        record = ["simulate", *BODY, "--until", str(size / 100), "--every", "0.01", "--noise", "0.01", "--seed", "2"]
         with open(folder / f"{size}.csv", "w") as file:
             subprocess.run([program, *record], check=True, stdout=file)
     if name == "members of an ensemble":
