@@ -127,8 +127,9 @@ impl Attitude {
                 let course = match course {
                     Some(course) => course,
                     None => {
-                        resting = self.sensor.resting(&record);
-                        *course.insert(self.course(&readings, &record)?)
+                        let begun = self.course(&readings, &record)?;
+                        resting = self.sensor.resting(begun.noise_by, &record);
+                        *course.insert(begun)
                     }
                 };
                 let mut current = match integration.take() {

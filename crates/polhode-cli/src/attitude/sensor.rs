@@ -50,8 +50,8 @@ impl SensorArguments {
     }
 
     /// Where the steps of digital readings cannot be told, in words; `None` where they can, or what they leave open is stated.
-    pub(super) fn resting(&self, record: &Record) -> Option<String> {
-        let is_found = self.noise.is_none() && self.bias.is_none() && Findings::noise(record).1;
+    pub(super) fn resting(&self, noise_by: NoiseBy, record: &Record) -> Option<String> {
+        let is_found = noise_by == NoiseBy::Record && self.bias.is_none();
         is_found.then(|| Findings::resting(record, "attitude_sigma", "--bias")).flatten()
     }
 
